@@ -1,0 +1,1 @@
+"""Squeeze film damper rotors predicted live by harmonic balance, for ROS 2."""

@@ -1,0 +1,117 @@
+"""Parts of a machine: dataclasses that check themselves, read from and turned into plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import MISSING, dataclass, fields
+from typing import Any, ClassVar, TypeVar, get_type_hints
+
+from sfd_hbm_ros.machine.errors import MachineError, dotted, show, show_key, unknown
+from sfd_hbm_ros.machine.rules import REQUIRED, Rule
+
+P = TypeVar("P", bound="Part")
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a machine, each of whose fields obeys its rule from construction on.
+
+    Raises
+    ------
+    MachineError
+        If a field breaks its rule.
+    """
+
+    place: ClassVar[str] = ""
+    """Dotted key of such a part, into which its fields are formatted."""
+
+    rules: ClassVar[Mapping[str, Rule]] = {}
+    """The rule of each field, in the fields' order."""
+
+    def __init_subclass__(cls) -> None:
+        hints = get_type_hints(cls, include_extras=True)
+        cls.rules = {
+            key: rule for key, hint in hints.items() for rule in getattr(hint, "__metadata__", ())
+        }
+
+    def __post_init__(self) -> None:
+        for key, rule in self.rules.items():
+            value = getattr(self, key)
+            try:
+                converted = rule.convert(value)
+            except (ValueError, TypeError, OverflowError):
+                raise self.error(key, f"must be {rule.allowed}, not {show(value)}") from None
+            object.__setattr__(self, key, converted)
+
+    @property
+    def where(self) -> str:
+        """Dotted key of the part in a machine file, as far as its own fields tell."""
+        return self.place.format(**vars(self))
+
+    def error(self, key: str, problem: str) -> MachineError:
+        """Return the error of one of the part's own keys."""
+        return MachineError(problem, key, self.where)
+
+
+def plain(part: Part) -> dict[str, Any]:
+    """Return a part as plain data: mappings, lists, text, numbers and booleans."""
+    return {key: rule.plain(getattr(part, key)) for key, rule in part.rules.items()}
+
+
+def read(kind: type[P], data: object, place: str, materials: Any = (), **given: object) -> P:
+    """Return the part that plain data describe.
+
+    Parameters
+    ----------
+    kind : type
+        The dataclass to make.
+    data : mapping
+        The file's data.
+    place : str
+        Dotted key of the data.
+    materials : tuple of Material
+        What the part may refer to.
+    **given
+        Fields that stand elsewhere than among the data.
+
+    Raises
+    ------
+    MachineError
+        If a key is unknown or missing, or a value is not allowed.
+    """
+    expected = {key: rule for key, rule in kind.rules.items() if key not in given}
+    entries = _known_keys(data, expected, place)
+    values = _defaults(kind) | given
+    for key, rule in expected.items():
+        if key in entries:
+            # A segment's material is one of the machine's, whose rule comes before the shaft's.
+            known = values.get("materials", materials)
+            values[key] = rule.read(entries[key], dotted(place, key), known)
+        elif key not in values:
+            raise MachineError(f"is missing: {rule.about}, {rule.allowed}", key, place)
+    try:
+        return kind(**values)
+    except MachineError as error:
+        raise error.at(place) from None
+
+
+def _known_keys(data: object, expected: Collection[str], place: str) -> Mapping[str, Any]:
+    """Return the data if they are a mapping that has no other keys than those expected."""
+    if not isinstance(data, Mapping):
+        keys = ", ".join(expected)
+        problem = f"must be a mapping with the keys {keys}, not {show(data)}"
+        raise MachineError(problem, place or "the machine")
+    for key in data:
+        if key not in expected:
+            raise MachineError(unknown(key, expected), show_key(key), place)
+    return data
+
+
+def _defaults(kind: type[Part]) -> dict[str, Any]:
+    """Return what a part has for the keys that a file may leave out."""
+    return {
+        field.name: default
+        for field in fields(kind)
+        for default in (field.default, kind.rules[field.name].default)
+        if default is not MISSING and default is not REQUIRED
+    }

@@ -1,0 +1,63 @@
+"""Any entry of a machine by its dotted path, such as ``dampers.damper_1.centering_stiffness``.
+
+The items of a list go by their name, unbalances and loads by their station, and what has neither
+by its index: ``shaft.0.length``, ``loads.disk_3.force.1``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from sfd_hbm_ros.machine.errors import MachineError, dotted, show_key, unknown
+from sfd_hbm_ros.machine.files import machine_from_dict, machine_to_dict
+from sfd_hbm_ros.machine.model import Machine
+from sfd_hbm_ros.machine.nested import item_label
+
+
+def get(machine: Machine, path: str) -> Any:
+    """Return an entry of a machine as it stands in a machine file.
+
+    Raises
+    ------
+    MachineError
+        If there is no such entry; the sentence says which there are.
+    """
+    container, key = _find(machine_to_dict(machine), path)
+    return container[key]
+
+
+def override(machine: Machine, path: str, value: Any) -> Machine:
+    """Return the machine with one entry changed, to a value as a machine file might hold it.
+
+    Raises
+    ------
+    MachineError
+        If there is no such entry, or the machine cannot be with that value.
+    """
+    data = machine_to_dict(machine)
+    container, key = _find(data, path)
+    container[key] = value
+    return machine_from_dict(data)
+
+
+def _find(data: Any, path: str) -> tuple[Any, Any]:
+    """Return the mapping or list that holds the entry at a path, and its key or index there."""
+    *parents, last = path.split(".")
+    place = ""
+    for label in parents:
+        data = data[_key(data, label, place)]
+        place = dotted(place, label)
+    return data, _key(data, last, place)
+
+
+def _key(entry: Any, label: str, place: str) -> Any:
+    """Return the key or the index that a label means in a mapping or a list."""
+    keys: dict[str, Any] = {}
+    if isinstance(entry, Mapping):
+        keys = {key: key for key in entry}
+    elif isinstance(entry, list):
+        keys = {item_label(item, index): index for index, item in enumerate(entry)}
+    if label not in keys:
+        raise MachineError(unknown(label, keys), dotted(place, show_key(label)))
+    return keys[label]

@@ -1,0 +1,137 @@
+"""Entries by their dotted paths, as the command line's --set and --vary name them."""
+
+import dataclasses
+from typing import Any
+
+import pytest
+
+from sfd_hbm_ros.machine import (
+    Bearing,
+    Load,
+    Machine,
+    MachineError,
+    get,
+    machine_to_dict,
+    override,
+)
+
+
+@pytest.fixture
+def machine(paper: Machine) -> Machine:
+    """The paper's machine with a load, and a bearing that is a matrix."""
+    bearing = Bearing("bearing_1", 0, ((1.0e8, 2.0e6), (-3.0e6, 1.1e8)))
+    loads = (Load("disk_3", (0.0, -100.0)),)
+    return dataclasses.replace(paper, bearings=(bearing,), loads=loads)
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("name", "three-disk rotor, reconstructed from the reference paper"),
+        ("gravity", False),
+        ("materials.steel.density", 7833.0),
+        ("shaft.0.outer_diameter", 0.0319),
+        ("shaft.0.material", "steel"),
+        ("disks.disk_2.node", 12),
+        ("bearings.bearing_1.stiffness", [[1.0e8, 2.0e6], [-3.0e6, 1.1e8]]),
+        ("bearings.bearing_1.stiffness.1.0", -3.0e6),
+        ("bearings.bearing_1.damping", 0.0),
+        ("dampers.damper_1.centering_stiffness", 2.627e6),
+        ("dampers.damper_1.film", {"model": "short", "cavitation": True, "inertia": True}),
+        ("dampers.damper_1.film.inertia", True),
+        ("unbalance.disk_2.magnitude", 4.319e-4),
+        ("loads.disk_3.force", [0.0, -100.0]),
+        ("loads.disk_3.force.1", -100.0),
+    ],
+)
+def test_get_and_put_back(machine: Machine, path: str, value: object) -> None:
+    assert get(machine, path) == value
+    assert override(machine, path, value) == machine
+
+
+def test_overrides_of_the_design(machine: Machine) -> None:
+    changed = override(machine, "dampers.damper_1.centering_stiffness", "1.7513e6")
+    changed = override(changed, "unbalance.disk_2.magnitude", 5.039e-4)
+    changed = override(changed, "gravity", "true")
+    assert changed.dampers == (
+        dataclasses.replace(machine.dampers[0], centering_stiffness=1.7513e6),
+    )
+    assert changed.unbalance[0].magnitude == 5.039e-4
+    assert changed.gravity is True
+    assert machine.gravity is False
+    assert changed.shaft == machine.shaft
+
+
+def test_a_material_changes_in_the_shaft_too(machine: Machine) -> None:
+    changed = override(machine, "materials.steel.youngs_modulus", 2.0e11)
+    assert changed.shaft[0].material.youngs_modulus == 2.0e11
+
+
+def test_one_component_of_a_force(machine: Machine) -> None:
+    assert override(machine, "loads.disk_3.force.1", -1600).loads[0].force == (0.0, -1600.0)
+
+
+def test_whole_entries(machine: Machine) -> None:
+    loads = [{"station": "damper_1", "force": [1, 2]}]
+    assert override(machine, "loads", loads).loads == (Load("damper_1", (1.0, 2.0)),)
+    film = {"model": "short", "inertia": False}
+    assert override(machine, "dampers.damper_1.film", film).dampers[0].film.inertia is False
+
+
+UNKNOWN = [
+    ("", "'' is unknown; known here: name, materials, shaft, disks"),
+    ("gravty", "gravty is unknown (did you mean gravity?); known here: name, materials"),
+    ("gravity.x", "gravity.x is unknown; known here: nothing"),
+    ("materials.stel", "materials.stel is unknown (did you mean steel?); known here: steel"),
+    ("shaft.1.length", "shaft.1 is unknown; known here: 0"),
+    ("shaft.steel", "shaft.steel is unknown; known here: 0"),
+    (
+        "disks.disk_9.mass",
+        "disks.disk_9 is unknown (did you mean disk_3?); known here: disk_1, di",
+    ),
+    ("disks.0.mass", "disks.0 is unknown; known here: disk_1, disk_2, disk_3"),
+    ("disks.disk_1.mas", "disks.disk_1.mas is unknown (did you mean mass?); known here: name, no"),
+    ("disks.disk_1.", "disks.disk_1.'' is unknown; known here: name, node, mass"),
+    ("dampers.damper_1.clearence", "dampers.damper_1.clearence is unknown (did you mean cleara"),
+    ("unbalance.disk_1.magnitude", "unbalance.disk_1 is unknown (did you mean disk_2?); known "),
+    ("loads.disk_3.force.2", "loads.disk_3.force.2 is unknown; known here: 0, 1"),
+]
+
+
+@pytest.mark.parametrize(("path", "sentence"), UNKNOWN)
+def test_unknown_paths_say_what_there_is(machine: Machine, path: str, sentence: str) -> None:
+    with pytest.raises(MachineError) as of_get:
+        get(machine, path)
+    with pytest.raises(MachineError) as of_override:
+        override(machine, path, 1.0)
+    assert str(of_get.value) == str(of_override.value)
+    assert str(of_get.value).startswith(sentence)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "sentence"),
+    [
+        ("dampers.damper_1.clearance", -1, "dampers.damper_1.clearance must be a finite number"),
+        (
+            "dampers.damper_1.clearance",
+            1,
+            "dampers.damper_1.clearance must be below the journal's",
+        ),
+        (
+            "loads.disk_3.force.1",
+            "down",
+            "loads.disk_3.force must be [x, y], each a finite number",
+        ),
+        ("disks.disk_2.name", "fan", "unbalance.disk_2.station must be one of the stations"),
+        ("shaft.0.elements", 12, "disks.disk_3.node must be a node of the shaft, 0 to 12, not 14"),
+        ("gravity", None, "gravity must be true or false, not nothing"),
+    ],
+)
+def test_bad_values_are_refused_as_in_a_file(
+    machine: Machine, path: str, value: Any, sentence: str
+) -> None:
+    before = machine_to_dict(machine)
+    with pytest.raises(MachineError) as error:
+        override(machine, path, value)
+    assert str(error.value).startswith(sentence)
+    assert machine_to_dict(machine) == before
