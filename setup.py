@@ -1,0 +1,38 @@
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+package = "sfd_hbm_ros"
+
+
+def files(folder: str, pattern: str) -> tuple[str, list[str]]:
+    """One entry of data_files: what the package's share folder gets of a folder."""
+    return f"share/{package}/{folder}", sorted(str(path) for path in Path(folder).glob(pattern))
+
+
+setup(
+    name=package,
+    version="0.1.0",
+    packages=find_packages(include=[package, f"{package}.*"]),
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{package}"]),
+        (f"share/{package}", ["package.xml"]),
+        files("config", "*.yaml"),
+        files("launch", "*.launch.*"),
+    ],
+    python_requires=">=3.11",
+    install_requires=["numpy", "scipy", "pyyaml", "matplotlib"],
+    extras_require={"test": ["pytest"]},
+    zip_safe=True,
+    maintainer="sfd_hbm_ros maintainers",
+    maintainer_email="maintainers@sfd-hbm-ros.org",
+    description="Live harmonic-balance predictions for rotors on squeeze film dampers",
+    license="Apache-2.0",
+    entry_points={
+        "console_scripts": [
+            f"predictor = {package}.node.predictor:main",
+            f"simulator = {package}.node.simulator:main",
+            f"sfd_hbm = {package}.cli:main",
+        ],
+    },
+)

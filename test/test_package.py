@@ -1,0 +1,111 @@
+"""The package as such: what it declares, imports and installs."""
+
+import ast
+import filecmp
+import importlib.metadata
+import os
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[1]
+MANIFEST = ET.parse(ROOT / "package.xml").getroot()
+ROSDEP_KEYS = {name: f"python3-{name}" for name in ("matplotlib", "numpy", "scipy", "yaml")}
+ROS_MODULE = re.compile(r"rclpy|rcl_interfaces|ament_index_python|launch\w*|\w+_(msgs|srvs)")
+
+
+def imported(path: Path) -> Iterator[str]:
+    """Top-level names of all that a file imports, wherever in it."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.partition(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            yield node.module.partition(".")[0]
+
+
+def outside_node(folder: str) -> list[Path]:
+    paths = (ROOT / folder).rglob("*.py")
+    return [path for path in paths if "node" not in path.relative_to(ROOT).parts]
+
+
+@pytest.fixture
+def prefix() -> Path:
+    """Where ROS finds the built package."""
+    for entry in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
+        if Path(entry, "share/ament_index/resource_index/packages/sfd_hbm_ros").is_file():
+            return Path(entry)
+    pytest.skip("sfd_hbm_ros is not built and sourced")
+
+
+def test_setup_py_and_package_xml_agree() -> None:
+    command = [sys.executable, "setup.py", "--name", "--version", "--license"]
+    printed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert printed.split() == [MANIFEST.findtext(tag) for tag in ("name", "version", "license")]
+
+
+def test_every_import_is_declared() -> None:
+    imports = {name for path in (ROOT / "sfd_hbm_ros").rglob("*.py") for name in imported(path)}
+    needed = imports - set(sys.stdlib_module_names) - {"sfd_hbm_ros"}
+    declared = {element.text for element in MANIFEST.iter("exec_depend")}
+    assert {ROSDEP_KEYS.get(name, name) for name in needed} <= declared
+
+
+@pytest.mark.parametrize("folder", ["sfd_hbm_ros", "test"])
+def test_only_node_imports_ros(folder: str) -> None:
+    importers = {
+        str(path.relative_to(ROOT)): name
+        for path in outside_node(folder)
+        for name in imported(path)
+        if ROS_MODULE.fullmatch(name)
+    }
+    assert importers == {}
+
+
+def test_all_but_node_works_without_ros() -> None:
+    modules = [
+        ".".join(path.relative_to(ROOT).with_suffix("").parts)
+        for path in outside_node("sfd_hbm_ros")
+        if path.stem not in ("__init__", "__main__")
+    ]
+    assert "sfd_hbm_ros.cli" in modules
+    # None in sys.modules is how Python is told that a module cannot be imported.
+    script = f"""if True:
+        import importlib, sys
+        sys.modules["rclpy"] = None
+        for module in {modules}:
+            importlib.import_module(module)
+    """
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_launch_file_names_what_exists() -> None:
+    text = (ROOT / "launch" / "predictor.launch.yaml").read_text()
+    actions = yaml.safe_load(text)["launch"]
+    arguments = {action["arg"]["name"] for action in actions if "arg" in action}
+    assert set(re.findall(r"\$\(var (\w+)\)", text)) == arguments
+    files = re.findall(r"\$\(find-pkg-share sfd_hbm_ros\)/(\S+)", text)
+    assert [name for name in files if not (ROOT / name).is_file()] == []
+
+
+def test_ros_finds_executables(prefix: Path) -> None:
+    installed = list((prefix / "lib" / "sfd_hbm_ros").iterdir())
+    assert {path.name for path in installed} == {"predictor", "simulator", "sfd_hbm"}
+    assert all(os.access(path, os.X_OK) for path in installed)
+    entry_points = importlib.metadata.distribution("sfd_hbm_ros").entry_points
+    assert all(callable(entry_point.load()) for entry_point in entry_points)
+
+
+@pytest.mark.parametrize("folder", ["config", "launch"])
+def test_ros_finds_files(prefix: Path, folder: str) -> None:
+    share = prefix / "share" / "sfd_hbm_ros"
+    assert (share / "package.xml").is_file()
+    names = [path.name for path in (ROOT / folder).iterdir()]
+    same, _, _ = filecmp.cmpfiles(ROOT / folder, share / folder, names, shallow=False)
+    assert sorted(same) == sorted(names)
