@@ -2,10 +2,9 @@
 
 from collections.abc import Callable
 
-from sfd_hbm_ros.machine import Damper
-
 from sfd_hbm_ros.film.protocol import FilmForces, FilmModel
 from sfd_hbm_ros.film.short import ShortFilm
+from sfd_hbm_ros.machine import Damper
 
 __all__ = ["FILMS", "FilmForces", "FilmModel", "ShortFilm", "film_of"]
 

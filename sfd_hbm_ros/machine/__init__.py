@@ -19,7 +19,7 @@ from sfd_hbm_ros.machine.files import (
     write_machine,
 )
 from sfd_hbm_ros.machine.model import Machine
-from sfd_hbm_ros.machine.paths import get, override
+from sfd_hbm_ros.machine.paths import get, override, override_all
 
 __all__ = [
     "FILM_MODELS",
@@ -37,6 +37,7 @@ __all__ = [
     "machine_from_dict",
     "machine_to_dict",
     "override",
+    "override_all",
     "read_machine",
     "write_machine",
 ]

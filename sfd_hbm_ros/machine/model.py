@@ -38,7 +38,7 @@ class Machine(Part):
     shaft: Annotated[tuple[ShaftSegment, ...], many("segments from node 0", ShaftSegment, least=1)]
     disks: Annotated[tuple[Disk, ...], many("disks", Disk, default=())]
     bearings: Annotated[tuple[Bearing, ...], many("bearings to ground", Bearing, default=())]
-    dampers: Annotated[tuple[Damper, ...], many("squeeze film dampers", Damper, least=1)]
+    dampers: Annotated[tuple[Damper, ...], many("squeeze film dampers", Damper, default=())]
     unbalance: Annotated[tuple[Unbalance, ...], many("unbalances", Unbalance)] = ()
     loads: Annotated[tuple[Load, ...], many("constant forces", Load)] = ()
     gravity: Annotated[bool, flag("whether gravity acts, 9.80665 m/s2 along -y")] = False

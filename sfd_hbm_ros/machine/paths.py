@@ -35,9 +35,23 @@ def override(machine: Machine, path: str, value: Any) -> Machine:
     MachineError
         If there is no such entry, or the machine cannot be with that value.
     """
+    return override_all(machine, {path: value})
+
+
+def override_all(machine: Machine, changes: Mapping[str, Any]) -> Machine:
+    """Return the machine with several entries changed at once, by their dotted paths.
+
+    Only the outcome is checked, so that entries which belong together may change together.
+
+    Raises
+    ------
+    MachineError
+        If there is no such entry, or the machine cannot be with these values.
+    """
     data = machine_to_dict(machine)
-    container, key = _find(data, path)
-    container[key] = value
+    for path, value in changes.items():
+        container, key = _find(data, path)
+        container[key] = value
     return machine_from_dict(data)
 
 

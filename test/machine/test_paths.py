@@ -13,6 +13,7 @@ from sfd_hbm_ros.machine import (
     get,
     machine_to_dict,
     override,
+    override_all,
 )
 
 
@@ -135,3 +136,14 @@ def test_bad_values_are_refused_as_in_a_file(
         override(machine, path, value)
     assert str(error.value).startswith(sentence)
     assert machine_to_dict(machine) == before
+
+
+def test_entries_that_belong_together_change_together(machine: Machine) -> None:
+    changes = {"shaft.0.elements": 48, "shaft.0.length": 0.0127, "dampers.damper_1.node": 48}
+    finer = override_all(machine, changes)
+    assert finer.nodes == 49
+    assert finer.stations["damper_1"] == 48
+    smaller = {"dampers.damper_1.diameter": 4e-4, "dampers.damper_1.clearance": 1e-4}
+    assert override_all(machine, smaller).dampers[0].clearance == 1e-4
+    with pytest.raises(MachineError, match="must be below the journal's radius"):
+        override(machine, "dampers.damper_1.diameter", 4e-4)

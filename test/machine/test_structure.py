@@ -26,7 +26,6 @@ UNKNOWN = [
 MISSING = [
     ("materials", "materials is missing: materials by name, a mapping of 1 or more names to"),
     ("shaft", "shaft is missing: segments from node 0, a list of 1 or more ShaftSegment"),
-    ("dampers", "dampers is missing: squeeze film dampers, a list of 1 or more Damper"),
     ("shaft.0.material", "shaft.0.material is missing: material"),
     ("disks.disk_1.mass", "disks.disk_1.mass is missing: mass, a finite number [kg] above 0"),
     ("disks.disk_1.name", "disks.0.name is missing: name of the station, a name of at most 64"),
@@ -43,7 +42,6 @@ WRONG_KINDS = [
     ("shaft", [], "shaft must be a list of 1 or more ShaftSegment, not []"),
     ("shaft", None, "shaft must be a list of 1 or more ShaftSegment, not []"),
     ("shaft", {"elements": 24}, "shaft must be a list of mappings, not {'elements': 24}"),
-    ("dampers", [], "dampers must be a list of 1 or more Damper, not []"),
     ("disks", "disk_1", "disks must be a list of mappings, not 'disk_1'"),
     ("disks.disk_1", "x", f"disks.0 must be a mapping with the keys {DISK}, not 'x'"),
     ("dampers.damper_1.film", "short", "dampers.damper_1.film must be a mapping with the keys"),

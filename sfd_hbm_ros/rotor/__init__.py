@@ -1,0 +1,26 @@
+"""The rotor: finite elements, condensation to the dampers' journals, whirl modes."""
+
+from sfd_hbm_ros.rotor.assembly import GRAVITY, assemble
+from sfd_hbm_ros.rotor.condensation import Condensation, Condensed
+from sfd_hbm_ros.rotor.criticals import CriticalSpeed, critical_speeds
+from sfd_hbm_ros.rotor.directions import Direction
+from sfd_hbm_ros.rotor.errors import ResonanceError
+from sfd_hbm_ros.rotor.model import RotorModel
+from sfd_hbm_ros.rotor.modes import WhirlMode, campbell, whirl_modes
+from sfd_hbm_ros.rotor.reduction import reduce_model
+
+__all__ = [
+    "GRAVITY",
+    "Condensation",
+    "Condensed",
+    "CriticalSpeed",
+    "Direction",
+    "ResonanceError",
+    "RotorModel",
+    "WhirlMode",
+    "assemble",
+    "campbell",
+    "critical_speeds",
+    "reduce_model",
+    "whirl_modes",
+]

@@ -1,0 +1,94 @@
+"""Frames in which the equations of one harmonic, P q = f, are solved.
+
+`Cartesian` takes the coordinates (x, y) as they come: one system of equations. `Whirl` splits a
+harmonic into a forward and a backward circle, x + i y = a exp(i w t) + conj(b) exp(-i w t):
+
+    a = (X + i Y) / 2,    b = (X - i Y) / 2,    X = a + b,    Y = -i (a - b)
+
+for x = Re(X exp(i w t)) and y = Re(Y exp(i w t)). Where the machine is axisymmetric, every 2x2
+block of its matrices being [[p, q], [-q, p]], the two circles do not couple: the forward one obeys
+p - i q, the backward one p + i q, each with half of the unknowns and of the bandwidth.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from sfd_hbm_ros.rotor.arrays import ComplexArray, NumberArray, RealArray
+from sfd_hbm_ros.rotor.model import RotorModel
+
+
+class Frame(Protocol):
+    """A choice of coordinates in which P q = f falls into one or more systems."""
+
+    def systems(self, matrix: RealArray) -> ComplexArray:
+        """Return the systems' matrices (s, n, m) of a real matrix in x, y interleaved."""
+
+    def split(self, vector: ComplexArray) -> ComplexArray:
+        """Return the systems' vectors (..., s, n) of amplitudes in x, y interleaved."""
+
+    def join(self, vectors: NumberArray) -> ComplexArray:
+        """Undo `split`."""
+
+    def join_matrices(self, matrices: NumberArray) -> ComplexArray:
+        """Return the matrices (..., N, N) in x, y of the systems' matrices (..., s, n, n)."""
+
+
+class Cartesian:
+    """Coordinates x and y as they are, for any machine: one system."""
+
+    def systems(self, matrix: RealArray) -> ComplexArray:
+        """See `Frame`."""
+        return matrix[np.newaxis].astype(complex)
+
+    def split(self, vector: ComplexArray) -> ComplexArray:
+        """See `Frame`."""
+        return vector[..., np.newaxis, :]
+
+    def join(self, vectors: NumberArray) -> ComplexArray:
+        """See `Frame`."""
+        return vectors[..., 0, :].astype(complex)
+
+    def join_matrices(self, matrices: NumberArray) -> ComplexArray:
+        """See `Frame`."""
+        return matrices[..., 0, :, :].astype(complex)
+
+
+class Whirl:
+    """Forward and backward circles of an axisymmetric machine: two systems."""
+
+    def systems(self, matrix: RealArray) -> ComplexArray:
+        """See `Frame`."""
+        forward = matrix[0::2, 0::2] - 1j * matrix[0::2, 1::2]
+        return np.stack([forward, forward.conj()])
+
+    def split(self, vector: ComplexArray) -> ComplexArray:
+        """See `Frame`."""
+        x, iy = vector[..., 0::2], 1j * vector[..., 1::2]
+        return np.stack([x + iy, x - iy], axis=-2) / 2.0
+
+    def join(self, vectors: NumberArray) -> ComplexArray:
+        """See `Frame`."""
+        forward, backward = vectors[..., 0, :], vectors[..., 1, :]
+        x_y = np.stack([forward + backward, -1j * (forward - backward)], axis=-1)
+        return x_y.reshape(*x_y.shape[:-2], -1)
+
+    def join_matrices(self, matrices: NumberArray) -> ComplexArray:
+        """See `Frame`."""
+        forward, backward = matrices[..., 0, :, :] / 2.0, matrices[..., 1, :, :] / 2.0
+        joined = np.empty((*forward.shape[:-2], *(2 * n for n in forward.shape[-2:])), complex)
+        joined[..., 0::2, 0::2] = joined[..., 1::2, 1::2] = forward + backward
+        joined[..., 0::2, 1::2] = 1j * (forward - backward)
+        joined[..., 1::2, 0::2] = -joined[..., 0::2, 1::2]
+        return joined
+
+
+def is_axisymmetric(model: RotorModel) -> bool:
+    """Tell whether every 2x2 block of a rotor's matrices is [[p, q], [-q, p]]."""
+    return all(
+        np.array_equal(matrix[0::2, 0::2], matrix[1::2, 1::2])
+        and np.array_equal(matrix[0::2, 1::2], -matrix[1::2, 0::2])
+        for matrix in (model.M, model.C, model.G, model.K)
+    )

@@ -1,0 +1,75 @@
+"""The rotor as matrices and forces, Eq. 1 of the paper: M q'' + (C + W G) q' + K q = f(t)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sfd_hbm_ros.rotor.arrays import ComplexArray, IndexArray, RealArray
+
+
+@dataclass(frozen=True, eq=False)
+class RotorModel:
+    """Matrices and linear forces of a rotor with N coordinates, its dampers' films left out.
+
+    The coordinates are (x, y, x', y') of every shaft node in turn, then (x, y) of every damper's
+    journal; see `sfd_hbm_ros.rotor.assembly`.
+
+    Parameters
+    ----------
+    M, C, G, K : (N, N) array
+        Mass, damping, gyroscopic matrix for unit speed, and stiffness, in SI units.
+    journals : (dampers, 2) array of int
+        Coordinates (x, y) of each damper's journal, in the machine's order.
+    stations : mapping of str to (2,) array of int
+        Coordinates (x, y) of the shaft at each station.
+    unbalance : (N,) complex array
+        Amplitude of the unbalance's force over the speed squared [kg m].
+    static_force : (N,) array
+        Loads, and the weight if the machine has it [N].
+    """
+
+    M: RealArray
+    C: RealArray
+    G: RealArray
+    K: RealArray
+    journals: IndexArray
+    stations: Mapping[str, IndexArray]
+    unbalance: ComplexArray
+    static_force: RealArray
+
+    @property
+    def size(self) -> int:
+        """Number N of all coordinates."""
+        return len(self.M)
+
+    @property
+    def shaft_size(self) -> int:
+        """Number of the shaft's coordinates, which come before the journals'."""
+        return self.size - self.journals.size
+
+    def linear_force(self, speed: float, orders: ArrayLike) -> ComplexArray:
+        """Return the amplitudes of all forces but the films', for orders of the speed.
+
+        Parameters
+        ----------
+        speed : float
+            Rotor speed [rad/s].
+        orders : (m,) array
+            Multiples of the speed. Order 0 has the static force, order 1 the unbalance's.
+
+        Returns
+        -------
+        (m, N) complex array
+            F in f(t) = Re(F exp(i order speed t)) [N, N m].
+        """
+        forces = np.stack([self.static_force, self.unbalance])
+        return np.asarray(force_factors(speed, np.asarray(orders, dtype=float)) @ forces)
+
+
+def force_factors(speed: float, orders: RealArray) -> RealArray:
+    """Return the factors (m, 2) of a rotor's static force and unbalance in each harmonic."""
+    return np.array([orders == 0.0, (orders == 1.0) * speed**2], dtype=float).T

@@ -1,0 +1,107 @@
+"""Whirl modes of the rotor on its bearings and centring springs, films left out.
+
+The upper modes of a finite element model belong to its mesh rather than to the rotor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eig, eigvals
+
+from sfd_hbm_ros.rotor.arrays import NumberArray
+from sfd_hbm_ros.rotor.directions import Direction, direction, senses
+from sfd_hbm_ros.rotor.frames import Whirl, is_axisymmetric
+from sfd_hbm_ros.rotor.model import RotorModel
+
+SHIFT = 1.0
+"""Eigenvalues are sought by the reciprocal of their distance from here [rad/s]: the low ones then
+come out to full precision, and rigid motions that nothing holds come out as zero."""
+
+HELD = 1e-3
+"""Below this frequency a motion counts as rigid and held by nothing [rad/s]."""
+
+
+@dataclass(frozen=True)
+class WhirlMode:
+    """A free vibration at a constant speed.
+
+    Parameters
+    ----------
+    frequency : float
+        Damped natural frequency, the imaginary part of the eigenvalue [rad/s].
+    direction : Direction
+        Sense of the orbits.
+    """
+
+    frequency: float
+    direction: Direction
+
+
+def whirl_modes(model: RotorModel, speed: float) -> list[WhirlMode]:
+    """Return the whirl modes at a speed, in rising order of frequency.
+
+    Overdamped motions, which do not oscillate, and rigid motions that nothing holds are left out.
+    A mode whose orbits run forward at some places and backward at others has the sense of the area
+    that it sweeps, weighted by the mass that sweeps it. At rest no sense is preferred, and all
+    modes count as planar.
+
+    Parameters
+    ----------
+    model : RotorModel
+        The rotor.
+    speed : float
+        Rotor speed [rad/s].
+
+    Returns
+    -------
+    list of WhirlMode
+        The modes, at most as many as the rotor has coordinates.
+    """
+    damping = model.C + speed * model.G
+    if is_axisymmetric(model):
+        # exp(s t) in x + i y runs forward if Im s > 0, and backward if Im s < 0.
+        M, D, K = (Whirl().systems(matrix)[0] for matrix in (model.M, damping, model.K))
+        eigenvalues = SHIFT + 1.0 / eigvals(_companion(M, D, K))
+        sense = np.sign(eigenvalues.imag)
+    else:
+        reciprocals, vectors = eig(_companion(model.M, damping, model.K))
+        upper = reciprocals.imag < 0.0
+        eigenvalues = SHIFT + 1.0 / reciprocals[upper]
+        sense = senses(model.M, vectors[model.size :, upper])
+    frequencies = np.abs(eigenvalues.imag)
+    # Rounding gives an overdamped motion a frequency of its own.
+    oscillates = (frequencies > HELD) & (frequencies > 1e-6 * np.abs(eigenvalues))
+    return [
+        WhirlMode(float(frequencies[i]), direction(sense[i] if speed else 0.0))
+        for i in np.argsort(frequencies)
+        if oscillates[i]
+    ]
+
+
+def campbell(model: RotorModel, speeds: Iterable[float]) -> list[list[WhirlMode]]:
+    """Return the data of a Campbell diagram.
+
+    Parameters
+    ----------
+    model : RotorModel
+        The rotor.
+    speeds : iterable of float
+        Rotor speeds [rad/s].
+
+    Returns
+    -------
+    list of list of WhirlMode
+        The modes at each speed, as from `whirl_modes`.
+    """
+    return [whirl_modes(model, speed) for speed in speeds]
+
+
+def _companion(M: NumberArray, D: NumberArray, K: NumberArray) -> NumberArray:
+    """Return the matrix with the eigenpairs 1/(s - SHIFT) and (., q), (s^2 M + s D + K) q = 0."""
+    n = len(M)
+    shifted = K + SHIFT * D + SHIFT**2 * M
+    solved = np.linalg.solve(shifted, np.hstack([D + 2.0 * SHIFT * M, M]))
+    return np.vstack([-solved, np.eye(n, 2 * n)])
