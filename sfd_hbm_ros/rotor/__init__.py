@@ -5,6 +5,7 @@ from sfd_hbm_ros.rotor.condensation import Condensation, Condensed
 from sfd_hbm_ros.rotor.criticals import CriticalSpeed, critical_speeds
 from sfd_hbm_ros.rotor.directions import Direction
 from sfd_hbm_ros.rotor.errors import ResonanceError
+from sfd_hbm_ros.rotor.frames import is_axisymmetric
 from sfd_hbm_ros.rotor.model import RotorModel
 from sfd_hbm_ros.rotor.modes import WhirlMode, campbell, whirl_modes
 from sfd_hbm_ros.rotor.reduction import reduce_model
@@ -21,6 +22,7 @@ __all__ = [
     "assemble",
     "campbell",
     "critical_speeds",
+    "is_axisymmetric",
     "reduce_model",
     "whirl_modes",
 ]

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from sfd_hbm_ros.rotor.arrays import ComplexArray, NumberArray, RealArray
 from sfd_hbm_ros.rotor.errors import ResonanceError
 from sfd_hbm_ros.rotor.frames import Cartesian, Frame, Whirl, is_axisymmetric
-from sfd_hbm_ros.rotor.model import RotorModel, force_factors
+from sfd_hbm_ros.rotor.model import RotorModel, force_factor_slopes, force_factors
 from sfd_hbm_ros.rotor.pencil import BandedPencil, Pencil, SingularSystemError
 
 
@@ -88,6 +88,7 @@ class Condensation:
         n = terms.shape[-1] * model.shaft_size // model.size
         p11, p21 = terms[..., :n, :n], terms[..., n:, :n]
         self._p11, self._p12 = BandedPencil(p11), Pencil(terms[..., :n, n:])
+        self._p11_dense = Pencil(p11)
         self._p11_transposed = BandedPencil(p11.swapaxes(2, 3))
         self._p21_transposed = Pencil(p21.swapaxes(2, 3))
         self._p22 = Pencil(terms[..., n:, n:])
@@ -131,6 +132,29 @@ class Condensation:
         join, join_matrices = self._frame.join, self._frame.join_matrices
         return Condensed(speed, orders, join_matrices(stiffness), join(force[..., 0]), self)
 
+    def slope(self, speed: float, orders: ArrayLike) -> tuple[ComplexArray, ComplexArray]:
+        """Return the derivatives by the speed of `Condensed.stiffness` and `Condensed.force`.
+
+        With X = inv(P11) P12, Y = P21 inv(P11) and g = inv(P11) F1, Eqs. 10 and 11 give
+
+            U' = P22' - Y P12' - P21' X + Y P11' X,    -V' = F2' - Y F1' - (P21' - Y P11') g.
+
+        Parameters and errors are those of `at`; units [N s/m] and [N s].
+        """
+        orders = np.asarray(orders, dtype=float)
+        c, change = _coefficients(speed, orders), _coefficient_slopes(speed, orders)
+        factors, factor_slopes = force_factors(speed, orders), force_factor_slopes(speed, orders)
+        rhs = np.concatenate([self._p12.combine(c), self._f1.combine(factors)], axis=-1)
+        with _naming_resonance(speed, orders):
+            y = self._p11_transposed.solve(c, self._p21_transposed.combine(c)).swapaxes(2, 3)
+            x_and_g = self._p11.solve(c, rhs)
+        p21_slope = self._p21_transposed.change(change).swapaxes(2, 3)
+        both = (y @ self._p11_dense.change(change) - p21_slope) @ x_and_g
+        stiffness = self._p22.change(change) - y @ self._p12.change(change) + both[..., :-1]
+        direct = self._f2.change(factor_slopes) - y @ self._f1.change(factor_slopes)
+        force = direct + both[..., -1:]
+        return self._frame.join_matrices(stiffness), self._frame.join(force[..., 0])
+
     def shaft_response(
         self, speed: float, orders: RealArray, journals: ComplexArray
     ) -> ComplexArray:
@@ -147,6 +171,11 @@ def _coefficients(speed: float, orders: RealArray) -> RealArray:
     """Return the factors of i C, i G and M beside K in the dynamic stiffness, Eq. 8."""
     w = orders * speed
     return np.array([w, w * speed, -(w**2)]).T
+
+
+def _coefficient_slopes(speed: float, orders: RealArray) -> RealArray:
+    """Return the derivatives of `_coefficients` by the speed."""
+    return np.array([orders, 2.0 * orders * speed, -2.0 * orders**2 * speed]).T
 
 
 @contextmanager

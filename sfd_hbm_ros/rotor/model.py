@@ -73,3 +73,8 @@ class RotorModel:
 def force_factors(speed: float, orders: RealArray) -> RealArray:
     """Return the factors (m, 2) of a rotor's static force and unbalance in each harmonic."""
     return np.array([orders == 0.0, (orders == 1.0) * speed**2], dtype=float).T
+
+
+def force_factor_slopes(speed: float, orders: RealArray) -> RealArray:
+    """Return the derivatives of `force_factors` by the speed."""
+    return np.array([np.zeros_like(orders), (orders == 1.0) * 2.0 * speed], dtype=float).T

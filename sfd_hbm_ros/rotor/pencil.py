@@ -37,6 +37,11 @@ class Pencil:
         combined = self._terms[0] + coefficients @ self._terms[1:]
         return np.asarray(combined).reshape(len(coefficients), *self._shape)
 
+    def change(self, coefficients: RealArray) -> NumberArray:
+        """Return A - A_0 (m, ...), the derivative of A where `coefficients` are derivatives."""
+        changed = coefficients @ self._terms[1:]
+        return np.asarray(changed).reshape(len(coefficients), *self._shape)
+
 
 class BandedPencil:
     """Banded square matrices to be combined and solved.

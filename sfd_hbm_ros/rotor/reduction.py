@@ -6,6 +6,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from sfd_hbm_ros.rotor.arrays import RealArray
+from sfd_hbm_ros.rotor.frames import is_axisymmetric
 from sfd_hbm_ros.rotor.model import RotorModel
 
 
@@ -43,20 +44,25 @@ def reduce_model(model: RotorModel, highest_frequency: float) -> RotorModel:
 
 
 def _basis(model: RotorModel, highest_frequency: float) -> RealArray:
-    """Modes with the journals held, then the static deflection by each journal's unit motion."""
-    n = model.shaft_size
-    stiffness, coupling = _symmetric(model.K[:n, :n]), model.K[:n, n:]
-    squares = (-np.inf, highest_frequency**2)
-    _, modes = eigh(stiffness, model.M[:n, :n], subset_by_value=squares)
-    deflections = -np.linalg.solve(model.K[:n, :n], coupling)
+    """Modes with the journals held, then the static deflection by each journal's unit motion.
+
+    Those of an axisymmetric rotor are of one plane and come in pairs, x and y, so that the
+    reduced rotor is axisymmetric in the same way.
+    """
+    n, journals = model.shaft_size, model.journals.size
+    if is_axisymmetric(model):
+        planar = _modes(model.K[:n:2, :n:2], model.M[:n:2, :n:2], highest_frequency)
+        modes = np.kron(planar, np.eye(2))
+    else:
+        modes = _modes(model.K[:n, :n], model.M[:n, :n], highest_frequency)
+    deflections = -np.linalg.solve(model.K[:n, :n], model.K[:n, n:])
     return np.block(
-        [
-            [modes, deflections],
-            [np.zeros((model.size - n, modes.shape[1])), np.eye(model.size - n)],
-        ]
+        [[modes, deflections], [np.zeros((journals, modes.shape[1])), np.eye(journals)]]
     )
 
 
-def _symmetric(matrix: RealArray) -> RealArray:
-    """Symmetric part: a bearing's stiffness may have another, which does not shape the modes."""
-    return 0.5 * (matrix + matrix.T)
+def _modes(stiffness: RealArray, mass: RealArray, highest_frequency: float) -> RealArray:
+    """Columns of the modes up to a frequency; what is skew in a bearing does not shape them."""
+    symmetric = 0.5 * (stiffness + stiffness.T)
+    _, modes = eigh(symmetric, mass, subset_by_value=(-np.inf, highest_frequency**2))
+    return np.asarray(modes)
