@@ -1,0 +1,22 @@
+"""Harmonic balance: the periodic response of a machine on its squeeze films."""
+
+from sfd_hbm_ros.hbm.balance import Equations, HarmonicBalance
+from sfd_hbm_ros.hbm.floquet import Instability, Stability, stability
+from sfd_hbm_ros.hbm.harmonics import Harmonics
+from sfd_hbm_ros.hbm.newton import NewtonOptions, Outcome
+from sfd_hbm_ros.hbm.solution import JournalMotion, Solution
+from sfd_hbm_ros.hbm.solve import solve
+
+__all__ = [
+    "Equations",
+    "HarmonicBalance",
+    "Harmonics",
+    "Instability",
+    "JournalMotion",
+    "NewtonOptions",
+    "Outcome",
+    "Solution",
+    "Stability",
+    "solve",
+    "stability",
+]

@@ -1,0 +1,276 @@
+"""Pseudo-arclength continuation of a branch of solutions in one parameter (Eq. 12).
+
+Unknown are the coefficients and the parameter together. They are scaled, the coefficients by the
+clearance and the parameter by its range, so that the length of the arc has no unit and a step is
+as wide in eccentricity as in the parameter. Folds are passed as any other point.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sfd_hbm_ros.hbm.balance import Equations
+from sfd_hbm_ros.hbm.family import Family
+from sfd_hbm_ros.hbm.newton import DEFAULTS, NewtonOptions
+from sfd_hbm_ros.rotor import ResonanceError
+
+Array = NDArray[np.float64]
+
+_OUTSIDE = 1.0 - 1e-9  # eccentricity at which the film's forces can no longer be resolved
+_CROWDED = 0.97  # eccentricity beyond which a step that fails shows that no room is left
+_ROUNDING = 1e-8  # part of the rotor's forces that may be rounding, where it falls no further
+_STAGNATION = 0.1  # ratio of successive residuals that shows that
+_NUDGE = 1e-9  # of the parameter's range, by which an exact resonance is stepped over
+
+
+class Stop(Enum):
+    """Why a branch ended; the value is a sentence."""
+
+    RANGE = "the end of the parameter's range was reached"
+    CLEARANCE = "the orbit closes on the clearance"
+    STEP = "the step became too short for the corrector to converge"
+    POINTS = "the largest number of points was reached"
+
+
+@dataclass(frozen=True)
+class ContinuationOptions:
+    """Settings of the continuation; lengths of the arc are in clearances.
+
+    Parameters
+    ----------
+    first_step, longest_step, shortest_step : float
+        Lengths of the arc.
+    turning : float
+        Largest angle between the tangents of neighbouring points [rad].
+    iterations : int
+        Corrector steps that a point may take.
+    eccentricity : float
+        Eccentricity at which the branch ends, below 1.
+    points : int
+        Largest number of points.
+
+    Raises
+    ------
+    ValueError
+        If a setting is out of its range.
+    """
+
+    first_step: float = 0.01
+    longest_step: float = 0.06
+    shortest_step: float = 1e-7
+    turning: float = 0.3
+    iterations: int = 6
+    eccentricity: float = 0.995
+    points: int = 20_000
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.shortest_step <= self.first_step <= self.longest_step:
+            raise ValueError(
+                f"steps: {self.shortest_step}, {self.first_step}, {self.longest_step} are not "
+                "allowed, they must be positive and rise from shortest over first to longest"
+            )
+        if not 0.0 < self.eccentricity < 1.0:
+            raise ValueError(
+                f"eccentricity: {self.eccentricity} is not allowed, it must be between 0 and 1"
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A point of a branch.
+
+    Attributes
+    ----------
+    value : float
+        The parameter.
+    x : (n,) array
+        Coefficients [m].
+    tangent : (n + 1,) array
+        Unit tangent along the branch, of the scaled unknowns; its last entry is the parameter's.
+    eccentricity : float
+        Greatest eccentricity at the time samples.
+    iterations : int
+        Corrector steps that it took.
+    """
+
+    value: float
+    x: Array
+    tangent: Array
+    eccentricity: float
+    iterations: int
+
+
+class Branch:
+    """A branch of solutions, followed point by point from a known one.
+
+    Iterating yields the points, the start first; afterwards `stop` says why the branch ended.
+
+    Parameters
+    ----------
+    family : Family
+        The equations.
+    x : (n,) array
+        Converged coefficients at `start` [m].
+    start, end : float
+        Range of the parameter. The branch is followed towards `end` first, and ends where it
+        leaves the range at either side; its last point lies on that side.
+    options : ContinuationOptions
+        Settings.
+    newton : NewtonOptions
+        Tolerance of the residual.
+    """
+
+    def __init__(
+        self,
+        family: Family,
+        x: Array,
+        start: float,
+        end: float,
+        options: ContinuationOptions | None = None,
+        newton: NewtonOptions = DEFAULTS,
+    ) -> None:
+        self.family = family
+        self.options = options or ContinuationOptions()
+        self.newton = newton
+        self.start, self.end = start, end
+        self.stop: Stop | None = None
+        self._x = x
+
+        c = family.at(start).balance.clearances
+        self._scale = np.append(np.tile(c, x.size // c.size), abs(end - start))
+
+    def __iter__(self) -> Iterator[Point]:
+        options = self.options
+        direction = np.zeros(self._scale.size)
+        direction[-1] = np.sign(self.end - self.start)
+        point = self._point(self._x, self.start, direction, 0)
+        yield point
+        step = options.first_step
+        for _ in range(options.points):
+            following = self.corrected(point, step)
+            if following is None or not self._smooth(point, following, step):
+                step *= 0.5
+                if step < options.shortest_step:
+                    self.stop = Stop.CLEARANCE if point.eccentricity > _CROWDED else Stop.STEP
+                    return
+                continue
+            if not self._in_range(following.value):
+                yield self._last(point, following)
+                self.stop = Stop.RANGE
+                return
+            point = following
+            yield point
+            if point.eccentricity > options.eccentricity:
+                self.stop = Stop.CLEARANCE
+                return
+            if point.iterations <= 3:
+                step = min(1.5 * step, options.longest_step)
+            elif point.iterations >= 5:
+                step *= 0.7
+        self.stop = Stop.POINTS
+
+    def distance(self, point: Point, other: Point) -> float:
+        """Distance of a point from another along the other's tangent, as `corrected` takes it."""
+        return float(point.tangent @ (self._scaled(other) - self._scaled(point)))
+
+    def corrected(self, point: Point, step: float) -> Point | None:
+        """The point of the branch at a distance `step` along the tangent of another, if any."""
+        predicted = self._scaled(point) + step * point.tangent
+        unknowns, before = predicted, np.inf
+        for iteration in range(self.options.iterations + 1):
+            value, x = unknowns[-1] * self._scale[-1], unknowns[:-1] * self._scale[:-1]
+            equations = self._at(value)
+            if equations.eccentricity(x) >= _OUTSIDE:
+                return None
+            residual, jacobian = equations.linearise(x)
+            slope = self.family.slope(equations, value, x)
+            matrix = self._bordered(jacobian, slope, point.tangent)
+            norm = float(np.linalg.norm(residual))
+            if self._balanced(equations, x, norm, before):
+                return self._with_tangent(equations, value, x, matrix, iteration)
+            constraint = point.tangent @ (unknowns - predicted)
+            try:
+                unknowns = unknowns - np.linalg.solve(matrix, np.append(residual, constraint))
+            except np.linalg.LinAlgError:
+                return None
+            before = norm
+        return None
+
+    def _balanced(self, equations: Equations, x: Array, norm: float, before: float) -> bool:
+        """Whether the forces balance, or as nearly as the rounding of the condensation allows.
+
+        The rounding depends on the parameter, so that Newton's method cannot work it off while
+        the parameter moves. It grows near the rotor's undamped poles, as the forces do.
+        """
+        if norm <= self.newton.tolerance * (equations.load or 1.0):
+            return True
+        forces = float(np.linalg.norm(equations.linear @ x))
+        return norm <= _ROUNDING * forces and norm > _STAGNATION * before
+
+    def _point(self, x: Array, value: float, direction: Array, iterations: int) -> Point:
+        """A known solution with the tangent that has a positive part along `direction`."""
+        equations = self._at(value)
+        _, jacobian = equations.linearise(x)
+        slope = self.family.slope(equations, value, x)
+        matrix = self._bordered(jacobian, slope, direction)
+        return self._with_tangent(equations, value, x, matrix, iterations)
+
+    def _with_tangent(
+        self, equations: Equations, value: float, x: Array, matrix: Array, iterations: int
+    ) -> Point:
+        tangent = np.linalg.solve(matrix, np.eye(len(matrix))[-1])
+        tangent /= np.linalg.norm(tangent)
+        return Point(value, x, tangent, equations.eccentricity(x), iterations)
+
+    def _bordered(self, jacobian: Array, slope: Array, direction: Array) -> Array:
+        """Jacobian of the equations and of the arclength by the scaled unknowns."""
+        matrix = np.empty((direction.size, direction.size))
+        matrix[:-1, :-1] = jacobian * self._scale[:-1]
+        matrix[:-1, -1] = slope * self._scale[-1]
+        matrix[-1] = direction
+        return matrix
+
+    def _at(self, value: float) -> Equations:
+        try:
+            return self.family.at(value)
+        except ResonanceError:  # a single value, beside which the branch goes on
+            return self.family.at(value + _NUDGE * self._scale[-1])
+
+    def _scaled(self, point: Point) -> Array:
+        scaled: Array = np.append(point.x, point.value) / self._scale
+        return scaled
+
+    def _smooth(self, point: Point, following: Point, step: float) -> bool:
+        """Whether two points are near enough for a cubic between them to show every fold."""
+        turned = np.arccos(np.clip(point.tangent @ following.tangent, -1.0, 1.0))
+        if turned > self.options.turning:
+            return False
+        ahead, after = point.tangent[-1], following.tangent[-1]
+        if ahead * after <= 0.0:
+            return True  # one fold, which is located afterwards
+        # the cubic through both points and slopes has the derivative a + 2 b u + 3 c u^2
+        mean = (following.value - point.value) / self._scale[-1] / step
+        b, c = 3.0 * mean - 2.0 * ahead - after, ahead + after - 2.0 * mean
+        flattest = -b / (3.0 * c) if c != 0.0 else 0.0
+        slope = ahead + b * flattest
+        return bool(slope * ahead > 0.0 or not 0.0 < flattest < 1.0)
+
+    def _last(self, inside: Point, outside: Point) -> Point:
+        """The point on the side of the range that the branch leaves."""
+        side = self.end if (outside.value - self.end) * (self.end - self.start) > 0 else self.start
+        part = (side - inside.value) / (outside.value - inside.value)
+        x = inside.x + part * (outside.x - inside.x)
+        equations = self._at(side)
+        for _ in range(self.newton.iterations):
+            residual, jacobian = equations.linearise(x)
+            if np.linalg.norm(residual) <= self.newton.tolerance * (equations.load or 1.0):
+                break
+            x = x - np.linalg.solve(jacobian, residual)
+        return self._point(x, side, outside.tangent, outside.iterations)
+
+    def _in_range(self, value: float) -> bool:
+        low, high = sorted((self.start, self.end))
+        return low <= value <= high

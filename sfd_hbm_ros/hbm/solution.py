@@ -1,0 +1,125 @@
+"""What a harmonic balance solve hands on: the motion of each damper's journal."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sfd_hbm_ros.hbm.harmonics import Harmonics
+from sfd_hbm_ros.hbm.newton import Outcome
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+_ORBIT_POINTS = 512
+
+
+@dataclass(frozen=True, eq=False)
+class JournalMotion:
+    """Periodic motion of one damper's journal.
+
+    Attributes
+    ----------
+    name : str
+        The damper.
+    clearance : float
+        Its clearance [m].
+    harmonics : Harmonics
+        Harmonics of the coefficients.
+    coefficients : (2k + 1, 2) array
+        Mean, then cosine and sine of each order, of x and y [m] (Eq. 2).
+    """
+
+    name: str
+    clearance: float
+    harmonics: Harmonics
+    coefficients: Array
+
+    @property
+    def cos(self) -> Array:
+        """Mean and cosine coefficients [m], (k + 1, 2)."""
+        return self.harmonics.amplitudes(self.coefficients).real
+
+    @property
+    def sin(self) -> Array:
+        """Sine coefficients [m], (k + 1, 2); that of order 0 is zero."""
+        return 0.0 - self.harmonics.amplitudes(self.coefficients).imag
+
+    def orbit(self, points: int = _ORBIT_POINTS) -> Array:
+        """Positions over one revolution [m], (points, 2)."""
+        return self.at(2.0 * np.pi * np.arange(points) / points)
+
+    @cached_property
+    def eccentricity_max(self) -> float:
+        """Greatest eccentricity sqrt(x^2 + y^2)/c of the orbit (Eq. 15)."""
+        angle = 2.0 * np.pi * np.arange(_ORBIT_POINTS) / _ORBIT_POINTS
+        squares = (self.orbit() ** 2).sum(axis=1)
+        best = int(np.argmax(squares))
+        refined = angle[best : best + 1]
+        for _ in range(4):  # Newton's method on the derivative of the squared distance
+            position, velocity, curvature = (self.at(refined, order) for order in (0, 1, 2))
+            slope = (position * velocity).sum()
+            bend = (velocity**2 + position * curvature).sum()
+            if bend >= 0.0:  # a circle about the centre has no maximum to refine
+                break
+            refined = refined - np.clip(slope / bend, -angle[1], angle[1])
+        farthest = max(squares[best], (self.at(refined) ** 2).sum())
+        return float(np.sqrt(farthest)) / self.clearance
+
+    @cached_property
+    def eccentricity_mean(self) -> float:
+        """Eccentricity averaged over the revolution."""
+        return float(np.linalg.norm(self.orbit(), axis=1).mean()) / self.clearance
+
+    def at(self, angle: Array, derivative: int = 0) -> Array:
+        """Positions at rotor angles [rad], or their derivatives by the angle, (len(angle), 2)."""
+        return self.harmonics.basis_at(angle, derivative) @ self.coefficients
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Response of a machine at one speed, or why there is none.
+
+    Attributes
+    ----------
+    speed : float
+        Rotor speed [rad/s].
+    harmonics : Harmonics
+        Harmonics that were balanced.
+    outcome : Outcome
+        How the solution ended. Unless it converged, `coefficients` are NaN.
+    message : str
+        The outcome as a sentence.
+    residuals : tuple of float
+        History of the residual's norm, relative to the load.
+    journals : mapping of str to JournalMotion
+        Motion of each damper's journal, by the damper's name.
+    """
+
+    speed: float
+    harmonics: Harmonics
+    outcome: Outcome
+    message: str
+    residuals: tuple[float, ...]
+    journals: dict[str, JournalMotion]
+
+    @property
+    def converged(self) -> bool:
+        """Whether this is a solution."""
+        return self.outcome.converged
+
+    @property
+    def residual(self) -> float:
+        """Last norm of the residual, relative to the load; NaN where nothing was iterated."""
+        return self.residuals[-1] if self.residuals else float("nan")
+
+    @property
+    def iterations(self) -> int:
+        """Number of Newton steps of the last attempt."""
+        return max(len(self.residuals) - 1, 0)
+
+    @property
+    def coefficients(self) -> Array:
+        """Coefficients of all journals side by side [m], (2k + 1, 2 dampers)."""
+        return np.hstack([motion.coefficients for motion in self.journals.values()])

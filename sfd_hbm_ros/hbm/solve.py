@@ -1,0 +1,147 @@
+"""The response at one speed: from a neighbour, from a first guess, or by raising the load."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sfd_hbm_ros.hbm.balance import Equations, HarmonicBalance
+from sfd_hbm_ros.hbm.continuation import Branch
+from sfd_hbm_ros.hbm.family import LoadFamily
+from sfd_hbm_ros.hbm.newton import DEFAULTS, NewtonOptions, NewtonResult, Outcome, newton
+from sfd_hbm_ros.hbm.solution import JournalMotion, Solution
+from sfd_hbm_ros.rotor import ResonanceError
+
+Array = NDArray[np.float64]
+
+_GUESS_LIMIT = 0.7  # eccentricity to which a linear guess is scaled down
+
+
+def solve(
+    balance: HarmonicBalance,
+    speed: float,
+    start: Solution | None = None,
+    options: NewtonOptions = DEFAULTS,
+) -> Solution:
+    """Solve the harmonic balance at one speed.
+
+    Parameters
+    ----------
+    balance : HarmonicBalance
+        The machine and the harmonics.
+    speed : float
+        Rotor speed [rad/s], positive.
+    start : Solution, optional
+        A converged solution nearby, tried first: on the branch that it lies on where there are
+        several. Otherwise, and where it does not lead to a solution, the response with the
+        films' linear coefficients is the start, and if need be the load is raised step by step.
+    options : NewtonOptions
+        Tolerance and limits.
+
+    Returns
+    -------
+    Solution
+        Converged, or with the outcome and history of the last attempt.
+
+    Raises
+    ------
+    ValueError
+        If the speed is not a positive, finite number.
+    """
+    if not (np.isfinite(speed) and speed > 0.0):
+        raise ValueError(f"speed: {speed} rad/s is not allowed, it must be positive and finite")
+    try:
+        equations = balance.at(speed)
+    except ResonanceError as error:
+        return _failure(balance, speed, Outcome.RESONANCE, str(error))
+    result = None
+    if start is not None and start.converged:
+        x = balance.harmonics.change_from(start.harmonics, start.coefficients).ravel()
+        if equations.eccentricity(x) < 1.0:
+            result = newton(equations, x, options)
+    if result is None or not result.outcome.converged:
+        result = newton(equations, first_guess(equations), options)
+    message = result.outcome.value
+    if not result.outcome.converged:
+        result, message = raise_load(equations, options)
+    if not result.outcome.converged:
+        return _failure(balance, speed, result.outcome, message, result.residuals)
+    return _solution(balance, speed, result.x, result.outcome, message, result.residuals)
+
+
+def first_guess(equations: Equations) -> Array:
+    """Response with the films' small-motion coefficients, scaled to lie within the clearance."""
+    matrix = equations.linear + equations.linear_film
+    x: Array = np.linalg.solve(matrix, equations.force.ravel()).astype(float)
+    eccentricity = equations.eccentricity(x)
+    return x if eccentricity <= _GUESS_LIMIT else x * (_GUESS_LIMIT / eccentricity)
+
+
+def raise_load(equations: Equations, options: NewtonOptions) -> tuple[NewtonResult, str]:
+    """Solve under the unbalance alone, then with more and more of the static load.
+
+    Where the unbalance alone has no solution from the first guess, it is raised from zero too.
+
+    Returns
+    -------
+    The last result, and its outcome as a sentence.
+    """
+    static = np.zeros_like(equations.force)
+    static[0] = equations.force[0]
+    unbalance = equations.force - static
+    alone = equations.with_force(unbalance)
+    result = newton(alone, first_guess(alone), options)
+    message = result.outcome.value
+    if not result.outcome.converged:
+        nothing = np.zeros_like(unbalance)
+        result, message = _follow_load(equations, nothing, unbalance, nothing.ravel(), options)
+    if result.outcome.converged and static.any():
+        result, message = _follow_load(equations, unbalance, static, result.x, options)
+    return result, message
+
+
+def _follow_load(
+    equations: Equations, base: Array, part: Array, x: Array, options: NewtonOptions
+) -> tuple[NewtonResult, str]:
+    """Follow the branch from the force `base`, where x is the solution, to `base` + `part`.
+
+    It is followed by arclength, as it may fold on the way.
+    """
+    branch = Branch(LoadFamily(equations, base, part), x, 0.0, 1.0, newton=options)
+    *_, last = branch
+    result = newton(equations.with_force(base + last.value * part), last.x, options)
+    if last.value == 1.0 and result.outcome.converged:
+        return result, f"{result.outcome.value}, reached by raising the load"
+    reason = branch.stop.value if branch.stop else result.outcome.value
+    sentence = f"{Outcome.LOAD.value}: beyond {100.0 * last.value:.2f} % of it {reason}"
+    return NewtonResult(last.x, Outcome.LOAD, result.residuals), sentence
+
+
+def solution_at(balance: HarmonicBalance, speed: float, x: Array) -> Solution:
+    """Solution of converged coefficients (rows n,) that another method has found."""
+    return _solution(balance, speed, x, Outcome.CONVERGED, Outcome.CONVERGED.value, ())
+
+
+def _failure(
+    balance: HarmonicBalance,
+    speed: float,
+    outcome: Outcome,
+    message: str,
+    residuals: tuple[float, ...] = (),
+) -> Solution:
+    nowhere = np.full((balance.harmonics.rows, len(balance.clearances)), np.nan)
+    return _solution(balance, speed, nowhere, outcome, message, residuals)
+
+
+def _solution(
+    balance: HarmonicBalance,
+    speed: float,
+    x: Array,
+    outcome: Outcome,
+    message: str,
+    residuals: tuple[float, ...],
+) -> Solution:
+    columns = np.hsplit(x.reshape(balance.harmonics.rows, -1), len(balance.films))
+    journals = {
+        damper.name: JournalMotion(damper.name, damper.clearance, balance.harmonics, q)
+        for damper, q in zip(balance.machine.dampers, columns, strict=True)
+    }
+    return Solution(speed, balance.harmonics, outcome, message, residuals, journals)

@@ -1,0 +1,82 @@
+"""Machines that the harmonic balance is tried on."""
+
+from pathlib import Path
+
+import numpy as np
+
+from sfd_hbm_ros.machine import (
+    Bearing,
+    Damper,
+    Disk,
+    FilmSettings,
+    Load,
+    Machine,
+    Material,
+    ShaftSegment,
+    Unbalance,
+    read_machine,
+)
+
+PAPER = read_machine(Path(__file__).parents[2] / "config" / "paper_rotor.yaml")
+#: Changes of the paper's rotor after which nothing lifts its journal off the damper's wall.
+UNBEARABLE = {
+    "gravity": True,
+    "unbalance.disk_2.magnitude": 0.0,
+    "dampers.damper_1.centering_stiffness": 2e4,
+}
+STEEL = Material("steel", 2.07e11, 7833.0, 0.3)
+
+DEFAULT_FILM = FilmSettings()
+
+
+def isotropic(value):
+    return ((value, 0.0), (0.0, value))
+
+
+def damper(rng, name, node, film):
+    """A damper near the paper's."""
+    return Damper(
+        name=name,
+        node=node,
+        bearing_stiffness=1e8 * rng.uniform(0.5, 2.0),
+        bearing_damping=rng.uniform(0.0, 100.0),
+        journal_mass=rng.uniform(0.3, 2.0),
+        centering_stiffness=10.0 ** rng.uniform(5.5, 7.0),
+        diameter=0.0762 * rng.uniform(0.8, 1.2),
+        length=0.0254 * rng.uniform(0.8, 1.2),
+        clearance=2.54e-4 * rng.uniform(0.6, 1.4),
+        viscosity=0.028 * rng.uniform(0.5, 2.0),
+        density=865.0,
+        film=film,
+    )
+
+
+def random_machine(
+    seed, film=DEFAULT_FILM, dampers=1, anisotropic=False, gravity=False, elements=None
+):
+    """A rotor of random size with two disks, on one bearing and one damper or on two dampers."""
+    rng = np.random.default_rng(seed)
+    elements = elements or int(rng.integers(6, 13))
+    first, second = sorted(rng.choice(np.arange(1, elements), 2, replace=False).tolist())
+    stiffness = 1e8 * rng.uniform(0.3, 1.5)
+    matrix = ((stiffness, 0.0), (0.0, 0.6 * stiffness)) if anisotropic else isotropic(stiffness)
+    places = [elements, 0][:dampers]
+    return Machine(
+        name=f"random machine {seed}",
+        materials=(STEEL,),
+        shaft=(ShaftSegment(elements, 0.6 / elements, rng.uniform(0.028, 0.04), 0.0, STEEL),),
+        disks=tuple(
+            Disk(
+                name, node, rng.uniform(2.0, 6.0), rng.uniform(5e-3, 2e-2), rng.uniform(3e-3, 1e-2)
+            )
+            for name, node in (("disk_1", first), ("disk_2", second))
+        ),
+        bearings=(Bearing("bearing_1", 0, matrix, isotropic(0.0)),) if dampers == 1 else (),
+        dampers=tuple(damper(rng, f"damper_{i}", node, film) for i, node in enumerate(places, 1)),
+        unbalance=(
+            Unbalance("disk_1", 4e-4 * rng.uniform(0.3, 1.0), rng.uniform(-3.0, 3.0)),
+            Unbalance("disk_2", 4e-4 * rng.uniform(0.3, 1.0), rng.uniform(-3.0, 3.0)),
+        ),
+        loads=(Load("disk_1", (30.0, -50.0)),) if gravity else (),
+        gravity=gravity,
+    )

@@ -1,0 +1,178 @@
+"""Pseudo-arclength continuation against the closed-form circular orbit, and its ends."""
+
+import dataclasses
+import itertools
+
+import numpy as np
+import pytest
+from scipy.optimize import fsolve
+
+from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
+from sfd_hbm_ros.hbm.continuation import Branch, ContinuationOptions, Stop
+from sfd_hbm_ros.hbm.events import with_folds
+from sfd_hbm_ros.hbm.family import LoadFamily, ParameterFamily, SpeedFamily
+from sfd_hbm_ros.machine import override, override_all
+
+from .machines import PAPER, random_machine
+from .test_circular_orbit import PI_FILM, circular_orbits, excess
+
+RPM = np.pi / 30.0
+
+
+def follow(machine, start, end, harmonics=3, **options):
+    balance = HarmonicBalance(machine, Harmonics(harmonics))
+    first = solve(balance, start)
+    assert first.converged
+    settings = ContinuationOptions(**options)
+    return Branch(SpeedFamily(balance), first.coefficients.ravel(), start, end, settings)
+
+
+def heavier(machine, factor):
+    unbalance = tuple(
+        dataclasses.replace(one, magnitude=factor * one.magnitude) for one in machine.unbalance
+    )
+    return dataclasses.replace(machine, unbalance=unbalance)
+
+
+def closed_form_fold(machine, model, fold):
+    """Speed at which the circular orbit's equation and its derivative by e vanish together."""
+
+    def conditions(unknowns):
+        w, e, h = unknowns[0] * fold.value, unknowns[1], 1e-5
+        scale = excess(machine, model, w, 0.5) - excess(machine, model, w, 0.0)
+        ahead, behind = (excess(machine, model, w, e + side * h) for side in (1, -1))
+        return excess(machine, model, w, e) / scale, (ahead - behind) / (2.0 * h * scale)
+
+    start = (1.0002, fold.eccentricity + 0.002)
+    found, _, status, message = fsolve(conditions, start, xtol=1e-12, full_output=True)
+    assert status == 1, message
+    return found[0] * fold.value
+
+
+@pytest.mark.parametrize(
+    ("seed", "count"),
+    [(605, 2), (606, 2), (624, 2), (629, 2), (601, 0), (609, 0), (616, 0), (620, 0)],
+)
+def test_folds_are_those_of_the_closed_form(seed, count):
+    machine = heavier(random_machine(seed, film=PI_FILM), 2.0)
+    branch = follow(machine, 100.0, 900.0, harmonics=1)
+    points = list(with_folds(branch, branch))
+    assert branch.stop is Stop.RANGE
+    model = branch.family.balance.model
+    folds = [point for point, is_fold in points if is_fold]
+    assert len(folds) == count
+    for fold in folds:
+        assert fold.value == pytest.approx(closed_form_fold(machine, model, fold), abs=1e-6 * RPM)
+        assert abs(fold.tangent[-1]) < 1e-4
+    if not folds:
+        for w in np.linspace(101.0, 899.0, 100):
+            assert len(circular_orbits(machine, model, w)) == 1
+
+
+@pytest.mark.parametrize("seed", [603, 610])
+def test_branch_closes_on_the_clearance(seed):
+    """Every point up to an eccentricity of 0.99 lies on the closed-form curve."""
+    machine = heavier(random_machine(seed, film=PI_FILM), 2.0)
+    branch = follow(machine, 100.0, 900.0, harmonics=1, eccentricity=0.99)
+    points = list(branch)
+    assert branch.stop is Stop.CLEARANCE
+    assert points[-1].eccentricity > 0.99
+    model = branch.family.balance.model
+    for point in points[::3] + points[-1:]:
+        nearest = min(
+            abs(e - point.eccentricity) for e, _ in circular_orbits(machine, model, point.value)
+        )
+        assert nearest < 1e-7
+
+
+def test_undamped_pole_is_passed():
+    """The pinned-pinned critical speed of the paper's rotor, 4 162 rpm, is a pole of Eq. 10."""
+    branch = follow(PAPER, 4000 * RPM, 4400 * RPM)
+    points = list(branch)
+    assert branch.stop is Stop.RANGE
+    assert points[-1].value == 4400 * RPM
+    for point in points[::4]:
+        [(e, _)] = circular_orbits(PAPER, branch.family.balance.model, point.value)
+        assert point.eccentricity == pytest.approx(e, abs=1e-7)
+
+
+def test_points_are_ordered_and_near():
+    branch = follow(override(PAPER, "gravity", True), 3700 * RPM, 4100 * RPM, longest_step=0.03)
+    points = list(branch)
+    for before, after in itertools.pairwise(points):
+        assert before.tangent @ after.tangent > np.cos(branch.options.turning)
+        assert branch.distance(before, after) < 0.031
+    assert all(np.linalg.norm(point.tangent) == pytest.approx(1.0) for point in points)
+
+
+@pytest.mark.parametrize(
+    ("path", "start", "end"),
+    [
+        ("unbalance.disk_2.magnitude", 1e-4, 6e-4),
+        ("dampers.damper_1.centering_stiffness", 2.627e6, 5e5),
+        ("dampers.damper_1.viscosity", 0.028, 0.05),
+        ("dampers.damper_1.clearance", 2.54e-4, 2e-4),
+        ("disks.disk_1.polar_inertia", 9.3e-3, 9e-2),
+        ("loads.disk_3.force.1", 0.0, -300.0),
+    ],
+)
+def test_any_parameter_can_vary(path, start, end):
+    changes = {"gravity": True, "loads": [{"station": "disk_3", "force": [0.0, -1.0]}]}
+    machine = override(override_all(PAPER, changes), path, start)
+    speed = 3800 * RPM
+    balance = HarmonicBalance(machine, Harmonics(3))
+    family = ParameterFamily(balance, speed, path)
+    first = solve(balance, speed).coefficients.ravel()
+    branch = Branch(family, first, start, end)
+    points = list(branch)
+    assert branch.stop is Stop.RANGE
+    assert points[-1].value == end
+    direct = solve(HarmonicBalance(override(machine, path, end), Harmonics(3)), speed)
+    assert points[-1].x == pytest.approx(direct.coefficients.ravel(), abs=1e-10)
+
+
+@pytest.mark.parametrize("path", ["dampers.damper_1.viscosity", "dampers.damper_1.clearance"])
+def test_slope_by_a_parameter(path):
+    balance = HarmonicBalance(override(PAPER, "gravity", True), Harmonics(3))
+    family = ParameterFamily(balance, 400.0, path)
+    assert_slope(family, {"dampers.damper_1.viscosity": 0.03}.get(path, 2.5e-4))
+
+
+def test_slope_by_the_speed_is_exact():
+    for machine in (override(PAPER, "gravity", True), random_machine(7, dampers=2, gravity=True)):
+        assert_slope(SpeedFamily(HarmonicBalance(machine, Harmonics(3))), 380.0)
+
+
+def test_slope_by_the_load():
+    equations = HarmonicBalance(override(PAPER, "gravity", True), Harmonics(3)).at(400.0)
+    assert_slope(LoadFamily(equations, 0.0 * equations.force, equations.force), 0.4)
+
+
+def assert_slope(family, value):
+    """The slope by the parameter against a sixth-order difference of the residual."""
+    equations = family.at(value)
+    rng = np.random.default_rng(0)
+    scale = np.tile(equations.balance.clearances, equations.balance.harmonics.rows)
+    x = 0.1 * rng.uniform(-1, 1, scale.size) * scale
+    step = 1e-3 * value
+    difference = sum(
+        weight
+        * (family.at(value + m * step).residual(x) - family.at(value - m * step).residual(x))
+        for m, weight in ((1, 3.0 / 4.0), (2, -3.0 / 20.0), (3, 1.0 / 60.0))
+        for side in (1, -1)
+    )
+    slope = family.slope(equations, value, x)
+    assert np.linalg.norm(difference / step - slope) < 1e-7 * np.linalg.norm(slope)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"first_step": 0.1}, "steps: .* must be positive and rise"),
+        ({"shortest_step": 0.0}, "steps: .* must be positive and rise"),
+        ({"eccentricity": 1.0}, "eccentricity: 1.0 .* between 0 and 1"),
+    ],
+)
+def test_options_out_of_range_are_refused(options, words):
+    with pytest.raises(ValueError, match=words):
+        ContinuationOptions(**options)
