@@ -1,0 +1,56 @@
+"""The command line: `python3 -m sfd_hbm_ros VERB MACHINE ...`, or `sfd_hbm VERB MACHINE ...`.
+
+Exit status 0 with the result on standard output; 2 with one sentence on standard error for bad
+input; 1 with one sentence where no solution was found.
+"""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from sfd_hbm_ros.commands import modes, solve
+from sfd_hbm_ros.commands.arguments import add_machine
+from sfd_hbm_ros.commands.errors import NoSolutionError
+from sfd_hbm_ros.machine import MachineError
+
+VERBS = {"solve": solve, "modes": modes}
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser that refuses in one sentence."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message}\n")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one verb and return the exit status."""
+    parser = _Parser(
+        prog="sfd_hbm", description="Rotors on squeeze film dampers by harmonic balance."
+    )
+    verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
+    for name, verb in VERBS.items():
+        summary = (verb.__doc__ or "").splitlines()[0]
+        options = verbs.add_parser(name, help=summary, description=summary)
+        add_machine(options)
+        verb.add_options(options)
+    chosen = parser.parse_args(arguments)
+    try:
+        VERBS[chosen.verb].run(chosen)
+    except (MachineError, ValueError) as error:
+        return _refuse(parser.prog, error, 2)
+    except NoSolutionError as error:
+        return _refuse(parser.prog, error, 1)
+    except BrokenPipeError:  # the reader of a pipe has seen enough
+        sys.stderr.close()
+    return 0
+
+
+def _refuse(program: str, error: Exception, status: int) -> int:
+    print(f"{program}: {error}", file=sys.stderr)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

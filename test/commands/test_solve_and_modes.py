@@ -1,0 +1,126 @@
+"""The command line in a process of its own: results, refusals and exit statuses."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
+from sfd_hbm_ros.machine import override, read_machine
+
+ROOT = Path(__file__).parents[2]
+PAPER = str(ROOT / "config" / "paper_rotor.yaml")
+
+
+def run(*arguments):
+    command = [sys.executable, "-m", "sfd_hbm_ros", *arguments]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
+
+
+def test_solve_prints_what_the_library_computes():
+    done = run(
+        "solve", PAPER, "--rpm", "3900", "--set", "gravity=true", "--harmonics", "5", "--json"
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    printed = json.loads(done.stdout)
+    balance = HarmonicBalance(override(read_machine(PAPER), "gravity", True), Harmonics(5))
+    solution = solve(balance, 3900.0 * np.pi / 30.0)
+    motion = solution.journals["damper_1"]
+    assert list(printed) == [
+        "speed_rpm",
+        "converged",
+        "residual",
+        "iterations",
+        "stable",
+        "dampers",
+    ]
+    assert printed["speed_rpm"] == pytest.approx(3900.0, rel=1e-15)
+    assert printed["converged"] is True
+    assert printed["stable"] is True
+    damper = printed["dampers"]["damper_1"]
+    assert damper["orders"] == [0, 1, 2, 3, 4, 5]
+    assert damper["eccentricity_max"] == pytest.approx(motion.eccentricity_max, rel=1e-9)
+    assert damper["eccentricity_mean"] == pytest.approx(motion.eccentricity_mean, rel=1e-9)
+    rows = [damper[key] for key in ("x_cos", "y_cos", "x_sin", "y_sin")]
+    expected = [*motion.cos.T, *motion.sin.T]
+    assert np.allclose(rows, expected, rtol=1e-7, atol=1e-14)
+
+
+def test_solve_for_people_is_a_table():
+    done = run("solve", PAPER, "--rpm", "3900")
+    assert done.returncode == 0
+    assert "3900 rpm: stable response" in done.stdout
+    assert "damper_1: eccentricity max 0.6896" in done.stdout
+    assert "-0.0000" not in done.stdout
+
+
+def test_no_solution_is_status_1_and_one_sentence():
+    """Without unbalance nothing lifts the journal, and the soft spring cannot."""
+    changes = {
+        "unbalance.disk_2.magnitude": "0",
+        "gravity": "true",
+        "dampers.damper_1.centering_stiffness": "2e4",
+    }
+    options = [word for path, value in changes.items() for word in ("--set", f"{path}={value}")]
+    done = run("solve", PAPER, "--rpm", "3000", "--json", *options)
+    assert done.returncode == 1
+    assert done.stderr.startswith("sfd_hbm: no solution at 3000 rpm: the load could not be raised")
+    assert done.stderr.count("\n") == 1
+    printed = json.loads(done.stdout)
+    assert printed["converged"] is False
+    assert printed["stable"] is None
+    assert printed["dampers"]["damper_1"]["eccentricity_max"] is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ((), "sfd_hbm: the following arguments are required: VERB"),
+        (("turn", PAPER), "sfd_hbm: argument VERB: invalid choice: 'turn'"),
+        (("solve", PAPER), "sfd_hbm solve: the following arguments are required: --rpm"),
+        (("solve", PAPER, "--rpm", "-3"), "sfd_hbm: --rpm -3: must be a finite speed above 0 rpm"),
+        (("solve", PAPER, "--rpm", "nan"), "sfd_hbm: --rpm nan: must be a finite speed above 0"),
+        (("solve", PAPER, "--rpm", "fast"), "sfd_hbm solve: argument --rpm: invalid float value"),
+        (("modes", PAPER, "--rpm", "-1"), "sfd_hbm: --rpm -1: must be a finite speed of at least"),
+        (("solve", "none.yaml", "--rpm", "9"), "sfd_hbm: none.yaml: cannot be read: No such file"),
+        (("modes", PAPER, "--set", "gravity"), "sfd_hbm: --set gravity: must have the form PATH="),
+        (("modes", PAPER, "--set", "gravity=[1"), "sfd_hbm: --set gravity: line 1"),
+        (
+            ("modes", PAPER, "--set", "dampers.damper_1.clearance=-1"),
+            "sfd_hbm: dampers.damper_1.clearance must be a finite number [m] above 0, not -1",
+        ),
+        (
+            ("solve", PAPER, "--rpm", "9", "--harmonics", "0"),
+            "sfd_hbm: harmonics: 0 is not allowed, it must be at least 1",
+        ),
+    ],
+)
+def test_bad_input_is_status_2_and_one_sentence(arguments, sentence):
+    done = run(*arguments)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.startswith(sentence)
+    assert done.stderr.count("\n") == 1
+
+
+def test_modes_of_the_paper_rotor():
+    """Below the pinned-pinned critical speed near 4 160 rpm, since the spring gives way."""
+    criticals = json.loads(run("modes", PAPER, "--json").stdout)["critical_speeds"]
+    first = next(c["speed_rpm"] for c in criticals if c["direction"] == "forward")
+    assert 3600.0 < first < 4160.0
+    speeds = [c["speed_rpm"] for c in criticals]
+    assert speeds == sorted(speeds)
+    assert speeds[-1] <= 10.0 * speeds[0]
+    # at its critical speed a mode whirls as fast as the rotor turns
+    at_first = json.loads(run("modes", PAPER, "--rpm", repr(first), "--json").stdout)
+    forward = [m["frequency_rad_s"] for m in at_first["modes"] if m["direction"] == "forward"]
+    assert forward[0] == pytest.approx(first * np.pi / 30.0, rel=1e-9)
+
+
+def test_modes_for_people_are_a_table():
+    lines = run("modes", PAPER).stdout.splitlines()
+    assert lines[0].split() == ["speed_rpm", "direction"]
+    assert lines[1].split()[1] == "backward"
