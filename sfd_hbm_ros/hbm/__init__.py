@@ -5,7 +5,7 @@ from sfd_hbm_ros.hbm.floquet import Instability, Stability, stability
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.newton import NewtonOptions, Outcome
 from sfd_hbm_ros.hbm.solution import JournalMotion, Solution
-from sfd_hbm_ros.hbm.solve import solve
+from sfd_hbm_ros.hbm.solve import solve, solve_equations
 
 __all__ = [
     "Equations",
@@ -18,5 +18,6 @@ __all__ = [
     "Solution",
     "Stability",
     "solve",
+    "solve_equations",
     "stability",
 ]

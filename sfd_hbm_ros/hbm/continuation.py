@@ -30,6 +30,7 @@ class Stop(Enum):
     """Why a branch ended; the value is a sentence."""
 
     RANGE = "the end of the parameter's range was reached"
+    CLOSED = "the branch came back to its first point"
     CLEARANCE = "the orbit closes on the clearance"
     STEP = "the step became too short for the corrector to converge"
     POINTS = "the largest number of points was reached"
@@ -115,8 +116,10 @@ class Branch:
     x : (n,) array
         Converged coefficients at `start` [m].
     start, end : float
-        Range of the parameter. The branch is followed towards `end` first, and ends where it
-        leaves the range at either side; its last point lies on that side.
+        The parameter at the first point, and where the branch is followed to at first.
+    bounds : (2,) tuple of float, optional
+        Range of the parameter, by default from `start` to `end`. The branch ends where it leaves
+        it at either side; its last point lies on that side.
     options : ContinuationOptions
         Settings.
     newton : NewtonOptions
@@ -129,6 +132,7 @@ class Branch:
         x: Array,
         start: float,
         end: float,
+        bounds: tuple[float, float] | None = None,
         options: ContinuationOptions | None = None,
         newton: NewtonOptions = DEFAULTS,
     ) -> None:
@@ -136,17 +140,18 @@ class Branch:
         self.options = options or ContinuationOptions()
         self.newton = newton
         self.start, self.end = start, end
+        self.low, self.high = sorted(bounds or (start, end))
         self.stop: Stop | None = None
         self._x = x
 
         c = family.at(start).balance.clearances
-        self._scale = np.append(np.tile(c, x.size // c.size), abs(end - start))
+        self._scale = np.append(np.tile(c, x.size // c.size), self.high - self.low)
 
     def __iter__(self) -> Iterator[Point]:
         options = self.options
         direction = np.zeros(self._scale.size)
         direction[-1] = np.sign(self.end - self.start)
-        point = self._point(self._x, self.start, direction, 0)
+        point = first = self._point(self._x, self.start, direction, 0)
         yield point
         step = options.first_step
         for _ in range(options.points):
@@ -157,7 +162,11 @@ class Branch:
                     self.stop = Stop.CLEARANCE if point.eccentricity > _CROWDED else Stop.STEP
                     return
                 continue
-            if not self._in_range(following.value):
+            if self._passes(point, following, first, step):
+                yield first
+                self.stop = Stop.CLOSED
+                return
+            if not self.low <= following.value <= self.high:
                 yield self._last(point, following)
                 self.stop = Stop.RANGE
                 return
@@ -258,9 +267,20 @@ class Branch:
         slope = ahead + b * flattest
         return bool(slope * ahead > 0.0 or not 0.0 < flattest < 1.0)
 
+    def _passes(self, point: Point, following: Point, first: Point, step: float) -> bool:
+        """Whether the step from a point to the following one runs through the first point."""
+        if point is first or first.tangent @ point.tangent < 0.5:
+            return False
+        ahead = self.distance(point, first)
+        aside = self._scaled(first) - self._scaled(point) - ahead * point.tangent
+        return bool(
+            0.0 < ahead <= self.distance(point, following)
+            and np.linalg.norm(aside) < self.options.turning * step
+        )
+
     def _last(self, inside: Point, outside: Point) -> Point:
         """The point on the side of the range that the branch leaves."""
-        side = self.end if (outside.value - self.end) * (self.end - self.start) > 0 else self.start
+        side = self.high if outside.value > self.high else self.low
         part = (side - inside.value) / (outside.value - inside.value)
         x = inside.x + part * (outside.x - inside.x)
         equations = self._at(side)
@@ -270,7 +290,3 @@ class Branch:
                 break
             x = x - np.linalg.solve(jacobian, residual)
         return self._point(x, side, outside.tangent, outside.iterations)
-
-    def _in_range(self, value: float) -> bool:
-        low, high = sorted((self.start, self.end))
-        return low <= value <= high

@@ -110,6 +110,11 @@ class Solution:
         return self.outcome.converged
 
     @property
+    def eccentricity_max(self) -> float:
+        """Greatest eccentricity of any damper."""
+        return max(motion.eccentricity_max for motion in self.journals.values())
+
+    @property
     def residual(self) -> float:
         """Last norm of the residual, relative to the load; NaN where nothing was iterated."""
         return self.residuals[-1] if self.residuals else float("nan")

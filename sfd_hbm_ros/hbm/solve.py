@@ -57,14 +57,27 @@ def solve(
         x = balance.harmonics.change_from(start.harmonics, start.coefficients).ravel()
         if equations.eccentricity(x) < 1.0:
             result = newton(equations, x, options)
+    message = Outcome.CONVERGED.value
     if result is None or not result.outcome.converged:
-        result = newton(equations, first_guess(equations), options)
-    message = result.outcome.value
-    if not result.outcome.converged:
-        result, message = raise_load(equations, options)
+        result, message = solve_equations(equations, options)
     if not result.outcome.converged:
         return _failure(balance, speed, result.outcome, message, result.residuals)
     return _solution(balance, speed, result.x, result.outcome, message, result.residuals)
+
+
+def solve_equations(
+    equations: Equations, options: NewtonOptions = DEFAULTS
+) -> tuple[NewtonResult, str]:
+    """Solve from the first guess or, where that fails, by raising the load.
+
+    Returns
+    -------
+    The last result, and its outcome as a sentence.
+    """
+    result = newton(equations, first_guess(equations), options)
+    if result.outcome.converged:
+        return result, result.outcome.value
+    return raise_load(equations, options)
 
 
 def first_guess(equations: Equations) -> Array:

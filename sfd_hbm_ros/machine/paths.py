@@ -41,7 +41,8 @@ def override(machine: Machine, path: str, value: Any) -> Machine:
 def override_all(machine: Machine, changes: Mapping[str, Any]) -> Machine:
     """Return the machine with several entries changed at once, by their dotted paths.
 
-    Only the outcome is checked, so that entries which belong together may change together.
+    Paths are those of the machine as it is. Only the outcome is checked, so that entries which
+    belong together may change together.
 
     Raises
     ------
@@ -49,8 +50,8 @@ def override_all(machine: Machine, changes: Mapping[str, Any]) -> Machine:
         If there is no such entry, or the machine cannot be with these values.
     """
     data = machine_to_dict(machine)
-    for path, value in changes.items():
-        container, key = _find(data, path)
+    places = [(_find(data, path), value) for path, value in changes.items()]
+    for (container, key), value in places:
         container[key] = value
     return machine_from_dict(data)
 

@@ -8,7 +8,7 @@ from sfd_hbm_ros.rotor.errors import ResonanceError
 from sfd_hbm_ros.rotor.frames import is_axisymmetric
 from sfd_hbm_ros.rotor.model import RotorModel
 from sfd_hbm_ros.rotor.modes import WhirlMode, campbell, whirl_modes
-from sfd_hbm_ros.rotor.reduction import reduce_model
+from sfd_hbm_ros.rotor.reduction import hold_journals, reduce_model
 
 __all__ = [
     "GRAVITY",
@@ -22,6 +22,7 @@ __all__ = [
     "assemble",
     "campbell",
     "critical_speeds",
+    "hold_journals",
     "is_axisymmetric",
     "reduce_model",
     "whirl_modes",

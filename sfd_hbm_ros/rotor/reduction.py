@@ -43,6 +43,24 @@ def reduce_model(model: RotorModel, highest_frequency: float) -> RotorModel:
     )
 
 
+def hold_journals(model: RotorModel) -> RotorModel:
+    """Return the rotor with its journals held: the shaft alone on bearings and ball bearings.
+
+    Its natural frequencies are the poles of the condensed stiffness, Eq. 10.
+    """
+    n = model.shaft_size
+    return RotorModel(
+        M=model.M[:n, :n],
+        C=model.C[:n, :n],
+        G=model.G[:n, :n],
+        K=model.K[:n, :n],
+        journals=model.journals[:0],
+        stations=model.stations,
+        unbalance=model.unbalance[:n],
+        static_force=model.static_force[:n],
+    )
+
+
 def _basis(model: RotorModel, highest_frequency: float) -> RealArray:
     """Modes with the journals held, then the static deflection by each journal's unit motion.
 

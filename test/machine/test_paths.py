@@ -147,3 +147,9 @@ def test_entries_that_belong_together_change_together(machine: Machine) -> None:
     assert override_all(machine, smaller).dampers[0].clearance == 1e-4
     with pytest.raises(MachineError, match="must be below the journal's radius"):
         override(machine, "dampers.damper_1.diameter", 4e-4)
+
+
+def test_paths_are_those_before_any_change(machine: Machine) -> None:
+    changes = {"unbalance.disk_2.station": "disk_1", "unbalance.disk_2.magnitude": 1e-4}
+    [unbalance] = override_all(machine, changes).unbalance
+    assert (unbalance.station, unbalance.magnitude) == ("disk_1", 1e-4)

@@ -1,0 +1,1 @@
+"""What an engineer asks of the solver: predictions, response curves, jumps."""

@@ -1,0 +1,192 @@
+"""The response curve of a machine: every branch that a run-up or a coast-down can meet."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sfd_hbm_ros.hbm import HarmonicBalance, Instability, Solution, solve, stability
+from sfd_hbm_ros.hbm.continuation import Branch, ContinuationOptions, Point, Stop
+from sfd_hbm_ros.hbm.events import with_folds
+from sfd_hbm_ros.hbm.family import Family, ParameterFamily, SpeedFamily
+from sfd_hbm_ros.hbm.solve import solution_at
+
+Array = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+
+class NoSolutionError(RuntimeError):
+    """The machine has no solution where one was asked for, or none was found."""
+
+
+@dataclass(frozen=True, eq=False)
+class CurveBranch:
+    """One branch of the response, in the order of its arc.
+
+    Attributes
+    ----------
+    values : (m,) array
+        The parameter that varies: rotor speed [rad/s], or an entry of the machine file.
+    solutions : tuple of Solution
+        The m points.
+    instability : tuple of Instability or None
+        How each is unstable; None for a stable point, `Instability.FOLD` for a fold.
+    fold : (m,) boolean array
+        Whether each is a fold.
+    stop : Stop
+        Why the branch ends.
+    """
+
+    values: Array
+    solutions: tuple[Solution, ...]
+    instability: tuple[Instability | None, ...]
+    fold: NDArray[np.bool_]
+    stop: Stop
+
+    @property
+    def stable(self) -> NDArray[np.bool_]:
+        """Whether each point is stable, (m,); a fold, where stability changes, is not."""
+        return np.array([one is None for one in self.instability])
+
+    @property
+    def speed(self) -> Array:
+        """Rotor speeds [rad/s], (m,)."""
+        return np.array([solution.speed for solution in self.solutions])
+
+    def eccentricity(self, damper: str) -> Array:
+        """Greatest eccentricity of a damper's orbit, (m,)."""
+        return np.array([one.journals[damper].eccentricity_max for one in self.solutions])
+
+    @cached_property
+    def worst_eccentricity(self) -> Array:
+        """Greatest eccentricity of any damper, (m,)."""
+        return np.array([one.eccentricity_max for one in self.solutions])
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseCurve:
+    """Response of a machine over a range of one parameter.
+
+    Attributes
+    ----------
+    balance : HarmonicBalance
+        The machine and the harmonics.
+    family : Family
+        The equations as the parameter varies.
+    branches : tuple of CurveBranch
+        The branch that begins at the start of the range first. Where it does not lead to the
+        range's end, the branch that begins there follows.
+    """
+
+    balance: HarmonicBalance
+    family: Family
+    branches: tuple[CurveBranch, ...]
+
+    @property
+    def dampers(self) -> tuple[str, ...]:
+        """Names of the dampers."""
+        return tuple(damper.name for damper in self.balance.machine.dampers)
+
+
+def response_curve(
+    balance: HarmonicBalance,
+    lowest: float,
+    highest: float,
+    options: ContinuationOptions | None = None,
+    progress: Progress | None = None,
+) -> ResponseCurve:
+    """Follow the response over a range of speeds.
+
+    Parameters
+    ----------
+    balance : HarmonicBalance
+        The machine and the harmonics.
+    lowest, highest : float
+        Range of the speed [rad/s].
+    options : ContinuationOptions, optional
+        Settings of the continuation.
+    progress : callable, optional
+        Called with the speed of every new point.
+
+    Raises
+    ------
+    NoSolutionError
+        If no solution was found at an end of the range.
+    """
+    return _curve(balance, SpeedFamily(balance), lowest, highest, options, progress)
+
+
+def parameter_curve(
+    balance: HarmonicBalance,
+    speed: float,
+    path: str,
+    start: float,
+    end: float,
+    options: ContinuationOptions | None = None,
+    progress: Progress | None = None,
+) -> ResponseCurve:
+    """Follow the response at one speed [rad/s] over a range of an entry of the machine file.
+
+    Further parameters and errors are those of `response_curve`; `path` is dotted.
+    """
+    family = ParameterFamily(balance, speed, path)
+    return _curve(balance, family, start, end, options, progress)
+
+
+def _curve(
+    balance: HarmonicBalance,
+    family: Family,
+    start: float,
+    end: float,
+    options: ContinuationOptions | None,
+    progress: Progress | None,
+) -> ResponseCurve:
+    first = _follow(family, start, end, options, progress)
+    branches = [first]
+    if first.stop is not Stop.RANGE or first.values[-1] != end:
+        branches.append(_follow(family, end, start, options, progress))
+    return ResponseCurve(balance, family, tuple(branches))
+
+
+def _follow(
+    family: Family,
+    start: float,
+    end: float,
+    options: ContinuationOptions | None,
+    progress: Progress | None,
+) -> CurveBranch:
+    """The branch that begins with the solution at `start`, towards `end`."""
+    equations = family.at(start)
+    first = solve(equations.balance, equations.speed)
+    if not first.converged:
+        rpm = first.speed * 30.0 / np.pi
+        raise NoSolutionError(f"no solution at {rpm:g} rpm: {first.message}")
+    branch = Branch(family, first.coefficients.ravel(), start, end, options=options)
+    return judged(branch, progress)
+
+
+def judged(branch: Branch, progress: Progress | None = None) -> CurveBranch:
+    """Follow a branch to its end, with its folds and the stability of every point."""
+    family = branch.family
+    values, solutions, instability, folds = [], [], [], []
+    for point, fold in with_folds(branch, _reported(branch, progress)):
+        at = family.at(point.value)
+        solution = solution_at(at.balance, at.speed, point.x)
+        values.append(point.value)
+        solutions.append(solution)
+        folds.append(fold)
+        found = Instability.FOLD if fold else stability(at.balance, solution).instability
+        instability.append(found)
+    assert branch.stop is not None
+    return CurveBranch(
+        np.array(values), tuple(solutions), tuple(instability), np.array(folds), branch.stop
+    )
+
+
+def _reported(branch: Branch, progress: Progress | None) -> Iterator[Point]:
+    for point in branch:
+        if progress is not None:
+            progress(point.value)
+        yield point

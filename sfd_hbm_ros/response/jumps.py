@@ -1,0 +1,137 @@
+"""The jumps that a machine makes as a parameter rises or falls through a response curve.
+
+The machine stays on its branch until the branch folds back or closes on the clearance. There it
+leaves for another stable response at the same value of the parameter.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from sfd_hbm_ros.hbm import Solution, stability
+from sfd_hbm_ros.hbm.continuation import Stop
+from sfd_hbm_ros.hbm.family import Family
+from sfd_hbm_ros.hbm.newton import newton
+from sfd_hbm_ros.hbm.solve import solution_at
+from sfd_hbm_ros.response.curve import CurveBranch, ResponseCurve
+
+_MOST_JUMPS = 20  # of one journey, so that a curve with an odd end cannot make it endless
+
+
+class Direction(StrEnum):
+    """Which way the parameter goes: for a speed, a run-up or a coast-down."""
+
+    RUN_UP = "run_up"
+    COAST_DOWN = "coast_down"
+
+
+@dataclass(frozen=True, eq=False)
+class Jump:
+    """One jump.
+
+    Attributes
+    ----------
+    direction : Direction
+        Which way the parameter went.
+    value : float
+        The parameter: for a speed [rad/s].
+    before, after : Solution
+        The last response on the branch that is left, and the one on which the machine lands.
+    """
+
+    direction: Direction
+    value: float
+    before: Solution
+    after: Solution
+
+
+class _Place(NamedTuple):
+    """A point of a branch, and the step in its arc along which the parameter travels on."""
+
+    branch: CurveBranch
+    point: int
+    step: int
+
+
+def jumps(curve: ResponseCurve, direction: Direction) -> list[Jump]:
+    """Jumps on the way through the whole range in one direction, in the order they happen."""
+    sign = 1.0 if direction is Direction.RUN_UP else -1.0
+    place: _Place | None = _first_place(curve, sign)
+    found: list[Jump] = []
+    while place is not None and len(found) < _MOST_JUMPS:
+        place = _travel(place, sign)
+        if place is None:
+            break
+        before = place.branch.solutions[place.point]
+        value = float(place.branch.values[place.point])
+        landing = _landing(curve, place, value, sign)
+        if landing is None:
+            break
+        after, place = landing
+        found.append(Jump(direction, value, before, after))
+    return found
+
+
+def _first_place(curve: ResponseCurve, sign: float) -> _Place:
+    """The end of the curve at which the journey begins."""
+    ends = [
+        _Place(branch, index, step)
+        for branch in curve.branches
+        for index, step in ((0, 1), (len(branch.values) - 1, -1))
+    ]
+    return min(ends, key=lambda end: sign * end.branch.values[end.point])
+
+
+def _travel(place: _Place, sign: float) -> _Place | None:
+    """The last point before the branch turns back or closes; None where the range is left."""
+    branch, index, step = place
+    values = branch.values
+    while 0 <= index + step < len(values):
+        if sign * (values[index + step] - values[index]) < 0.0:
+            return _Place(branch, index, step)
+        index += step
+    closes = branch.stop is not Stop.RANGE and step > 0
+    return _Place(branch, index, step) if closes else None
+
+
+def _landing(
+    curve: ResponseCurve, place: _Place, value: float, sign: float
+) -> tuple[Solution, _Place] | None:
+    """The nearest other stable response at a value, and where on its branch it lies."""
+    left = place.branch.worst_eccentricity[place.point]
+    candidates = []
+    for branch in curve.branches:
+        for i, solution in solutions_at(curve.family, branch, value):
+            if branch is place.branch and abs(i - place.point) <= 1:
+                continue
+            if not stability(curve.family.at(value).balance, solution).stable:
+                continue
+            onward = bool(sign * (branch.values[i + 1] - branch.values[i]) > 0.0)
+            there = _Place(branch, i + onward, 1 if onward else -1)
+            candidates.append((abs(solution.eccentricity_max - left), solution, there))
+    if not candidates:
+        return None
+    _, solution, there = min(candidates, key=lambda candidate: candidate[0])
+    return solution, there
+
+
+def solutions_at(
+    family: Family, branch: CurveBranch, value: float
+) -> Iterator[tuple[int, Solution]]:
+    """Converged responses of a branch at a value of the parameter.
+
+    Yields
+    ------
+    The index of the point before each in the order of the arc, and the response.
+    """
+    before, after = branch.values[:-1] - value, branch.values[1:] - value
+    for i in np.flatnonzero((before * after <= 0.0) & (before != after)):
+        part = before[i] / (before[i] - after[i])
+        here, there = (branch.solutions[j].coefficients for j in (i, i + 1))
+        equations = family.at(value)
+        result = newton(equations, (here + part * (there - here)).ravel())
+        if result.outcome.converged:
+            yield int(i), solution_at(equations.balance, equations.speed, result.x)
