@@ -33,6 +33,8 @@ class HarmonicBalance:
         The machine; it needs a damper.
     harmonics : Harmonics
         Harmonics of the speed to balance.
+    model : RotorModel, optional
+        The machine's rotor, where it is assembled already.
 
     Raises
     ------
@@ -40,12 +42,14 @@ class HarmonicBalance:
         If the machine has no damper.
     """
 
-    def __init__(self, machine: Machine, harmonics: Harmonics) -> None:
+    def __init__(
+        self, machine: Machine, harmonics: Harmonics, model: RotorModel | None = None
+    ) -> None:
         if not machine.dampers:
             raise MachineError("must hold at least one damper for harmonic balance", "dampers")
         self.machine = machine
         self.harmonics = harmonics
-        self.model: RotorModel = assemble(machine)
+        self.model: RotorModel = model or assemble(machine)
         self.films: tuple[FilmModel, ...] = tuple(film_of(damper) for damper in machine.dampers)
         self.condensation = Condensation(self.model)
 

@@ -124,6 +124,8 @@ class Branch:
         Settings.
     newton : NewtonOptions
         Tolerance of the residual.
+    direction : (n + 1,) array, optional
+        Tangent near which that of the first point is sought, by default that towards `end`.
     """
 
     def __init__(
@@ -135,6 +137,7 @@ class Branch:
         bounds: tuple[float, float] | None = None,
         options: ContinuationOptions | None = None,
         newton: NewtonOptions = DEFAULTS,
+        direction: Array | None = None,
     ) -> None:
         self.family = family
         self.options = options or ContinuationOptions()
@@ -143,15 +146,15 @@ class Branch:
         self.low, self.high = sorted(bounds or (start, end))
         self.stop: Stop | None = None
         self._x = x
-
         c = family.at(start).balance.clearances
-        self._scale = np.append(np.tile(c, x.size // c.size), self.high - self.low)
+        self._scale: Array = np.append(np.tile(c, x.size // c.size), self.high - self.low)
+        towards_end = np.zeros(self._scale.size)
+        towards_end[-1] = np.sign(end - start)
+        self._direction = towards_end if direction is None else direction
 
     def __iter__(self) -> Iterator[Point]:
         options = self.options
-        direction = np.zeros(self._scale.size)
-        direction[-1] = np.sign(self.end - self.start)
-        point = first = self._point(self._x, self.start, direction, 0)
+        point = first = self._point(self._x, self.start, self._direction, 0)
         yield point
         step = options.first_step
         for _ in range(options.points):

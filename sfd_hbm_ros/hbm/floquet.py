@@ -1,7 +1,7 @@
 """Floquet stability of a harmonic balance solution.
 
-A small disturbance of the response obeys linear equations with the period of a revolution: the
-rotor's matrices and the film's derivatives along the orbit. Their solution over one revolution,
+A small disturbance of the response obeys linear equations with the response's period: the
+rotor's matrices and the film's derivatives along the orbit. Their solution over one period,
 the monodromy matrix, is a product of matrix exponentials (Magnus series of fourth order, Blanes et
 al. 2009, Phys. Rep. 470, 151), exact where the coefficients are constant. Those of an axisymmetric
 rotor are written in the frame that turns with it, where a circular orbit stands still. The
@@ -89,7 +89,9 @@ def stability(balance: HarmonicBalance, solution: Solution) -> Stability:
     leading = np.inf
     for steps in (32, 64, 128, 256, 512, 1024, 2048, 4096):
         with np.errstate(over="ignore", invalid="ignore"):
-            monodromy = _monodromy(balance, rotor, solution, steps)
+            monodromy = _monodromy(
+                balance, rotor, solution, steps * solution.harmonics.revolutions
+            )
         if not np.all(np.isfinite(monodromy)):
             continue  # steps too long for so stiff a film
         multipliers = np.linalg.eigvals(monodromy).astype(complex)
@@ -103,10 +105,10 @@ def stability(balance: HarmonicBalance, solution: Solution) -> Stability:
 def _monodromy(
     balance: HarmonicBalance, rotor: RotorModel, solution: Solution, steps: int
 ) -> Array:
-    """Map of a disturbance (q, dq/dangle) over one revolution, (2m, 2m)."""
+    """Map of a disturbance (q, dq/dangle) over one period, (2m, 2m)."""
     rates = _rates(balance, rotor, solution, 2 * steps)
     first, middle, last = rates[:-1:2], rates[1::2], rates[2::2]
-    h = 2.0 * np.pi / steps
+    h = 2.0 * np.pi * solution.harmonics.revolutions / steps
     exponents = h / 6.0 * (first + 4.0 * middle + last)
     exponents -= h * h / 12.0 * (first @ last - last @ first)
     monodromy = np.eye(rates.shape[1])
@@ -116,14 +118,14 @@ def _monodromy(
 
 
 def _rates(balance: HarmonicBalance, rotor: RotorModel, solution: Solution, samples: int) -> Array:
-    """Matrices A of y' = A y over a revolution, y = (q, dq/dangle), (samples + 1, 2m, 2m)."""
+    """Matrices A of y' = A y over a period, y = (q, dq/dangle), (samples + 1, 2m, 2m)."""
     w, m = solution.speed, rotor.size
     mass, damping, stiffness = (
         np.repeat(matrix[np.newaxis], samples, axis=0)
         for matrix in (w * w * rotor.M, w * (rotor.C + w * rotor.G), rotor.K)
     )
     rotating = is_axisymmetric(rotor)
-    angle = 2.0 * np.pi * np.arange(samples) / samples
+    angle = solution.harmonics.angles(samples)
     turn = _turns(angle if rotating else np.zeros(samples))
     for (x, y), film, motion in zip(
         rotor.journals, balance.films, solution.journals.values(), strict=True

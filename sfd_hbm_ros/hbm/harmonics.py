@@ -1,7 +1,9 @@
 """The harmonics of a periodic motion and its way between coefficients and time (Eq. 2)."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,19 +14,23 @@ ComplexArray = NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class Harmonics:
-    """Orders 0..k of the rotor speed, sampled over one revolution.
+    """Orders of the rotor speed, sampled over one period of one or more revolutions.
 
-    Coefficients are real arrays (2k + 1, n): a row for the mean, then for each order a row of
+    Coefficients are real arrays (rows, n): a row for the mean, then for each order a row of
     cosines and one of sines. Complex amplitudes Q of q(t) = Re(Q exp(i w t)) are arrays
-    (k + 1, n), Q = Xc - i Xs.
+    (orders, n), Q = Xc - i Xs.
 
     Parameters
     ----------
     highest : int
-        The highest order k, at least 1.
+        The highest order k of the speed, at least 1.
     samples : int, optional
-        Time samples a revolution, at least 2k + 1. By default the least power of two from 64 on
-        that gives 16 samples to the highest order: the film's spectrum reaches beyond it.
+        Time samples a period. By default the least power of two from 64 on that gives 16 to the
+        highest order, for each revolution: the film's spectrum reaches beyond it.
+    revolutions : int, optional
+        Revolutions of the rotor in a period: 2 or 3 for sub-harmonics of a half or a third.
+    multiples : tuple of int, optional
+        The orders times `revolutions`, rising from 0; by default all up to the highest.
 
     Raises
     ------
@@ -34,27 +40,46 @@ class Harmonics:
 
     highest: int
     samples: int = 0
+    revolutions: int = 1
+    multiples: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         if self.highest < 1:
             raise ValueError(f"harmonics: {self.highest} is not allowed, it must be at least 1")
-        if self.samples == 0:
-            object.__setattr__(self, "samples", max(64, 1 << (16 * self.highest - 1).bit_length()))
-        if self.samples < 2 * self.highest + 1:
+        if self.revolutions < 1:
             raise ValueError(
-                f"samples: {self.samples} is not allowed, {self.highest} harmonics need at least "
-                f"{2 * self.highest + 1} a revolution"
+                f"revolutions: {self.revolutions} is not allowed, it must be at least 1"
+            )
+        most = self.highest * self.revolutions
+        multiples = self.multiples or tuple(range(most + 1))
+        revolution = max(64, 1 << (16 * self.highest - 1).bit_length())
+        samples = self.samples or self.revolutions * revolution
+        object.__setattr__(self, "multiples", multiples)
+        object.__setattr__(self, "samples", samples)
+        if multiples[0] != 0 or multiples[-1] > most or np.any(np.diff(multiples) <= 0):
+            raise ValueError(
+                f"multiples: {multiples} is not allowed, they must rise from 0 to {most} at most"
+            )
+        if samples < 2 * most + 1:
+            raise ValueError(
+                f"samples: {samples} is not allowed, {self.highest} harmonics need at least "
+                f"{2 * most + 1} a period"
             )
 
     @cached_property
-    def orders(self) -> NDArray[np.intp]:
-        """Orders 0..k, (k + 1,)."""
-        return np.arange(self.highest + 1)
+    def orders(self) -> NDArray[np.inexact[Any]] | NDArray[np.intp]:
+        """Orders of the speed, (orders,): whole numbers where a period is one revolution."""
+        multiples = np.array(self.multiples)
+        return multiples if self.revolutions == 1 else multiples / self.revolutions
+
+    def only(self, multiples: tuple[int, ...]) -> "Harmonics":
+        """A group of these harmonics, with the same samples."""
+        return Harmonics(self.highest, self.samples, self.revolutions, multiples)
 
     @property
     def rows(self) -> int:
-        """Number of coefficients of one coordinate, 2k + 1."""
-        return 2 * self.highest + 1
+        """Number of coefficients of one coordinate: one of the mean, two of each other order."""
+        return 2 * len(self.multiples) - 1
 
     def basis_at(self, angle: Array, derivative: int = 0) -> Array:
         """Values at rotor angles [rad] of the cosines and sines that the rows multiply.
@@ -71,10 +96,14 @@ class Harmonics:
         basis[:, 2::2] = orders**derivative * np.sin(shifted)
         return basis
 
+    def angles(self, points: int) -> Array:
+        """Rotor angles [rad] evenly spaced over a period, (points,)."""
+        return 2.0 * np.pi * self.revolutions * np.arange(points) / points
+
     @cached_property
     def bases(self) -> tuple[Array, Array, Array]:
         """Basis at the time samples and its first and second derivative, (samples, rows) each."""
-        angle = 2.0 * np.pi * np.arange(self.samples) / self.samples
+        angle = self.angles(self.samples)
         return self.basis_at(angle), self.basis_at(angle, 1), self.basis_at(angle, 2)
 
     @cached_property
@@ -85,14 +114,14 @@ class Harmonics:
         return projection
 
     def amplitudes(self, coefficients: Array) -> ComplexArray:
-        """Complex amplitudes (k + 1, n) of coefficients (2k + 1, n)."""
-        q = np.empty((self.highest + 1, coefficients.shape[1]), dtype=complex)
+        """Complex amplitudes (orders, n) of coefficients (rows, n)."""
+        q = np.empty((len(self.multiples), coefficients.shape[1]), dtype=complex)
         q[0] = coefficients[0]
         q[1:] = coefficients[1::2] - 1j * coefficients[2::2]
         return q
 
     def coefficients(self, amplitudes: ComplexArray) -> Array:
-        """Coefficients (2k + 1, n) of complex amplitudes (k + 1, n)."""
+        """Coefficients (rows, n) of complex amplitudes (orders, n)."""
         x = np.empty((self.rows, amplitudes.shape[1]))
         x[0] = amplitudes[0].real
         x[1::2] = amplitudes[1:].real
@@ -100,18 +129,22 @@ class Harmonics:
         return x
 
     def change_from(self, other: "Harmonics", coefficients: Array) -> Array:
-        """Coefficients of another set of harmonics, cut off or filled with zeros to this one."""
-        x = np.zeros((self.rows, coefficients.shape[1]))
-        common = min(self.rows, other.rows)
-        x[:common] = coefficients[:common]
-        return x
+        """Coefficients of another group of harmonics, cut or filled with zeros to this group."""
+        known = {Fraction(m, other.revolutions): i for i, m in enumerate(other.multiples)}
+        there = other.amplitudes(coefficients)
+        here = np.zeros((len(self.multiples), coefficients.shape[1]), dtype=complex)
+        for i, m in enumerate(self.multiples):
+            order = Fraction(m, self.revolutions)
+            if order in known:
+                here[i] = there[known[order]]
+        return self.coefficients(here)
 
     def real_matrix(self, blocks: ComplexArray) -> Array:
         """Real matrix over coefficients of complex blocks over amplitudes.
 
         Parameters
         ----------
-        blocks : (k + 1, n, n) complex array
+        blocks : (orders, n, n) complex array
             One matrix an order; that of order 0 must be real.
 
         Returns

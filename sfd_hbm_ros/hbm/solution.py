@@ -27,7 +27,7 @@ class JournalMotion:
         Its clearance [m].
     harmonics : Harmonics
         Harmonics of the coefficients.
-    coefficients : (2k + 1, 2) array
+    coefficients : (rows, 2) array
         Mean, then cosine and sine of each order, of x and y [m] (Eq. 2).
     """
 
@@ -38,23 +38,24 @@ class JournalMotion:
 
     @property
     def cos(self) -> Array:
-        """Mean and cosine coefficients [m], (k + 1, 2)."""
+        """Mean and cosine coefficients [m], (orders, 2)."""
         return self.harmonics.amplitudes(self.coefficients).real
 
     @property
     def sin(self) -> Array:
-        """Sine coefficients [m], (k + 1, 2); that of order 0 is zero."""
+        """Sine coefficients [m], (orders, 2); that of order 0 is zero."""
         return 0.0 - self.harmonics.amplitudes(self.coefficients).imag
 
     def orbit(self, points: int = _ORBIT_POINTS) -> Array:
-        """Positions over one revolution [m], (points, 2)."""
-        return self.at(2.0 * np.pi * np.arange(points) / points)
+        """Positions over one period [m], (points, 2)."""
+        return self.at(self.harmonics.angles(points))
 
     @cached_property
     def eccentricity_max(self) -> float:
         """Greatest eccentricity sqrt(x^2 + y^2)/c of the orbit (Eq. 15)."""
-        angle = 2.0 * np.pi * np.arange(_ORBIT_POINTS) / _ORBIT_POINTS
-        squares = (self.orbit() ** 2).sum(axis=1)
+        points = _ORBIT_POINTS * self.harmonics.revolutions
+        angle = self.harmonics.angles(points)
+        squares = (self.orbit(points) ** 2).sum(axis=1)
         best = int(np.argmax(squares))
         refined = angle[best : best + 1]
         for _ in range(4):  # Newton's method on the derivative of the squared distance
@@ -69,8 +70,9 @@ class JournalMotion:
 
     @cached_property
     def eccentricity_mean(self) -> float:
-        """Eccentricity averaged over the revolution."""
-        return float(np.linalg.norm(self.orbit(), axis=1).mean()) / self.clearance
+        """Eccentricity averaged over the period."""
+        orbit = self.orbit(_ORBIT_POINTS * self.harmonics.revolutions)
+        return float(np.linalg.norm(orbit, axis=1).mean()) / self.clearance
 
     def at(self, angle: Array, derivative: int = 0) -> Array:
         """Positions at rotor angles [rad], or their derivatives by the angle, (len(angle), 2)."""
@@ -126,5 +128,5 @@ class Solution:
 
     @property
     def coefficients(self) -> Array:
-        """Coefficients of all journals side by side [m], (2k + 1, 2 dampers)."""
+        """Coefficients of all journals side by side [m], (rows, 2 dampers)."""
         return np.hstack([motion.coefficients for motion in self.journals.values()])

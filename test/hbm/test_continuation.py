@@ -24,7 +24,7 @@ def follow(machine, start, end, harmonics=3, **options):
     first = solve(balance, start)
     assert first.converged
     settings = ContinuationOptions(**options)
-    return Branch(SpeedFamily(balance), first.coefficients.ravel(), start, end, settings)
+    return Branch(SpeedFamily(balance), first.coefficients.ravel(), start, end, options=settings)
 
 
 def heavier(machine, factor):
