@@ -1,13 +1,49 @@
 """Events on a branch, located between two of its points."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from scipy.optimize import brentq
 
 from sfd_hbm_ros.hbm.continuation import Branch, Point
 
-_FOLD_ACCURACY = 1e-5
-"""Of the arc, relative to the step in which a fold lies. The parameter errs with its square."""
+_ACCURACY = 1e-6  # of the arc's step in which an event lies
+
+
+def locate(
+    branch: Branch, before: Point, after: Point, event: Callable[[Point], float]
+) -> Point | None:
+    """The point of a branch at which a quantity passes through zero.
+
+    Parameters
+    ----------
+    branch : Branch
+        The branch.
+    before, after : Point
+        Neighbouring points of it, between which the quantity changes its sign.
+    event : callable
+        The quantity, such as ``lambda point: point.value - speed``, ``point.eccentricity - 0.5``,
+        or for a fold ``point.tangent[-1]``.
+
+    Returns
+    -------
+    The point, or None where the corrector found no point of the branch on the way.
+    """
+    length = branch.distance(before, after)
+    found: dict[float, Point] = {0.0: before}
+
+    def quantity(step: float) -> float:
+        point = found.get(step) or branch.corrected(before, step)
+        if point is None:
+            raise ArithmeticError("the corrector failed")
+        found[step] = point
+        return event(point)
+
+    try:
+        step = brentq(quantity, 0.0, length, xtol=_ACCURACY * length, rtol=1e-12)
+    except (ArithmeticError, ValueError):
+        return None
+    quantity(step)
+    return found[step]
 
 
 def with_folds(branch: Branch, points: Iterable[Point]) -> Iterator[tuple[Point, bool]]:
@@ -15,39 +51,8 @@ def with_folds(branch: Branch, points: Iterable[Point]) -> Iterator[tuple[Point,
     before: Point | None = None
     for point in points:
         if before is not None and before.tangent[-1] * point.tangent[-1] < 0.0:
-            fold = locate_fold(branch, before, point)
+            fold = locate(branch, before, point, lambda at: float(at.tangent[-1]))
             if fold is not None:
                 yield fold, True
         yield point, False
         before = point
-
-
-def locate_fold(branch: Branch, before: Point, after: Point) -> Point | None:
-    """The point at which the branch turns back in the parameter.
-
-    Parameters
-    ----------
-    branch : Branch
-        The branch.
-    before, after : Point
-        Neighbouring points, between which the parameter's part of the tangent changes its sign.
-
-    Returns
-    -------
-    The fold, or None where the corrector found no point of the branch on the way.
-    """
-    length = branch.distance(before, after)
-    found: list[Point] = []
-
-    def tangent_at(step: float) -> float:
-        point = branch.corrected(before, step) if step > 0.0 else before
-        if point is None:
-            raise ArithmeticError("the corrector failed")
-        found.append(point)
-        return float(point.tangent[-1])
-
-    try:
-        brentq(tangent_at, 0.0, length, xtol=_FOLD_ACCURACY * length, rtol=1e-12)
-    except (ArithmeticError, ValueError):
-        return None
-    return min(found, key=lambda point: abs(point.tangent[-1]))

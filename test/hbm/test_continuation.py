@@ -9,7 +9,7 @@ from scipy.optimize import fsolve
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.hbm.continuation import Branch, ContinuationOptions, Stop
-from sfd_hbm_ros.hbm.events import with_folds
+from sfd_hbm_ros.hbm.events import locate, with_folds
 from sfd_hbm_ros.hbm.family import LoadFamily, ParameterFamily, SpeedFamily
 from sfd_hbm_ros.machine import override, override_all
 
@@ -94,6 +94,22 @@ def test_undamped_pole_is_passed():
     for point in points[::4]:
         [(e, _)] = circular_orbits(PAPER, branch.family.balance.model, point.value)
         assert point.eccentricity == pytest.approx(e, abs=1e-7)
+
+
+def test_given_speed_and_eccentricity_are_located():
+    branch = follow(PAPER, 3500 * RPM, 3900 * RPM)
+    model = branch.family.balance.model
+    points = list(branch)
+    for quantity, wanted in (("value", 3700 * RPM), ("eccentricity", 0.5)):
+        before, after = next(
+            pair
+            for pair in itertools.pairwise(points)
+            if getattr(pair[0], quantity) < wanted <= getattr(pair[1], quantity)
+        )
+        event = lambda point, of=quantity, at=wanted: getattr(point, of) - at  # noqa: E731
+        point = locate(branch, before, after, event)
+        assert getattr(point, quantity) == pytest.approx(wanted, rel=1e-8)
+        assert excess(PAPER, model, point.value, point.eccentricity) == pytest.approx(0, abs=1e-5)
 
 
 def test_points_are_ordered_and_near():
