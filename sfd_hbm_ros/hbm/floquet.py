@@ -11,7 +11,6 @@ the response unstable.
 
 from dataclasses import dataclass
 from enum import Enum
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,10 +51,15 @@ class Stability:
 
     multipliers: ComplexArray
 
-    @cached_property
+    @property
+    def growth(self) -> float:
+        """How much the worst disturbance grows in a period beyond 1 and rounding."""
+        return float(np.abs(self.multipliers[0])) - 1.0 - _ROUNDING
+
+    @property
     def stable(self) -> bool:
         """Whether small disturbances die out."""
-        return bool(np.abs(self.multipliers[0]) <= 1.0 + _ROUNDING)
+        return self.growth <= 0.0
 
     @property
     def instability(self) -> Instability | None:

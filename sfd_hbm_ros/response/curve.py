@@ -3,13 +3,14 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Instability, Solution, solve, stability
 from sfd_hbm_ros.hbm.continuation import Branch, ContinuationOptions, Point, Stop
-from sfd_hbm_ros.hbm.events import with_folds
+from sfd_hbm_ros.hbm.events import locate, with_folds
 from sfd_hbm_ros.hbm.family import Family, ParameterFamily, SpeedFamily
 from sfd_hbm_ros.hbm.solve import solution_at
 
@@ -167,22 +168,59 @@ def _follow(
     return judged(branch, progress)
 
 
+class _Judged(NamedTuple):
+    """A point of a branch, its response and how that is unstable."""
+
+    point: Point
+    solution: Solution
+    instability: Instability | None
+    fold: bool
+
+
 def judged(branch: Branch, progress: Progress | None = None) -> CurveBranch:
-    """Follow a branch to its end, with its folds and the stability of every point."""
-    family = branch.family
-    values, solutions, instability, folds = [], [], [], []
+    """Follow a branch to its end, with its folds and the stability of every point.
+
+    Where stability is lost or regained other than at a fold, the point of the change is put in.
+    """
+    points: list[_Judged] = []
     for point, fold in with_folds(branch, _reported(branch, progress)):
-        at = family.at(point.value)
-        solution = solution_at(at.balance, at.speed, point.x)
-        values.append(point.value)
-        solutions.append(solution)
-        folds.append(fold)
-        found = Instability.FOLD if fold else stability(at.balance, solution).instability
-        instability.append(found)
+        one = _judge(branch.family, point, fold)
+        if points and not fold and not points[-1].fold:
+            change = _change(branch, points[-1], one)
+            points += [change] if change else []
+        points.append(one)
     assert branch.stop is not None
     return CurveBranch(
-        np.array(values), tuple(solutions), tuple(instability), np.array(folds), branch.stop
+        np.array([one.point.value for one in points]),
+        tuple(one.solution for one in points),
+        tuple(one.instability for one in points),
+        np.array([one.fold for one in points]),
+        branch.stop,
     )
+
+
+def _judge(family: Family, point: Point, fold: bool) -> _Judged:
+    at = family.at(point.value)
+    solution = solution_at(at.balance, at.speed, point.x)
+    kind = Instability.FOLD if fold else stability(at.balance, solution).instability
+    return _Judged(point, solution, kind, fold)
+
+
+def _change(branch: Branch, before: _Judged, after: _Judged) -> _Judged | None:
+    """The point between two others at which a multiplier passes the unit circle."""
+    if (before.instability is None) == (after.instability is None):
+        return None
+
+    def growth(point: Point) -> float:
+        at = branch.family.at(point.value)
+        found = stability(at.balance, solution_at(at.balance, at.speed, point.x))
+        return found.growth
+
+    point = locate(branch, before.point, after.point, growth)
+    if point is None:
+        return None
+    kind = before.instability or after.instability
+    return _judge(branch.family, point, False)._replace(instability=kind)
 
 
 def _reported(branch: Branch, progress: Progress | None) -> Iterator[Point]:
