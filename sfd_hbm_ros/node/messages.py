@@ -1,0 +1,185 @@
+"""All messages of the nodes, built and read in this one file.
+
+JointState is used because it is the stamped, named list of doubles that PlotJuggler, Foxglove and
+rosbag2 read without a package of our own; a typed interface package can replace it here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import WrenchStamped
+from rclpy.time import Time
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Header
+
+from sfd_hbm_ros.hbm import JournalMotion
+from sfd_hbm_ros.node.diagnostics import Status
+from sfd_hbm_ros.node.inputs import InputError
+
+Journals = Mapping[str, JournalMotion]
+Named = Iterator[tuple[str, float]]
+
+_SECOND = 1_000_000_000
+
+
+def read_stamp(header: Header) -> int:
+    """Return the stamp of a message [ns], negative ones too.
+
+    Raises
+    ------
+    InputError
+        If the nanoseconds are no part of a second.
+    """
+    stamp = header.stamp
+    if stamp.nanosec >= _SECOND:
+        raise InputError(f"stamp.nanosec must be below {_SECOND}, not {stamp.nanosec}")
+    return int(stamp.sec * _SECOND + stamp.nanosec)
+
+
+def read_speed(message: JointState) -> float:
+    """Return the rotor speed of a message [rad/s], zero at rest.
+
+    Raises
+    ------
+    InputError
+        If there is not one velocity, or it is negative or not finite.
+    """
+    if len(message.velocity) != 1:
+        raise InputError(
+            f"velocity must hold one number, the rotor speed [rad/s], not {len(message.velocity)}"
+        )
+    speed = float(message.velocity[0])
+    if not 0.0 <= speed < math.inf:
+        raise InputError(f"velocity[0] must be a finite number [rad/s] of at least 0, not {speed}")
+    return speed
+
+
+def read_load(message: WrenchStamped) -> tuple[str, tuple[float, float]]:
+    """Return the station of a load and its force (x, y) [N], neither of them checked."""
+    force = message.wrench.force
+    return message.header.frame_id, (force.x, force.y)
+
+
+def speed_message(stamp: Time, speed: float, angle: float) -> JointState:
+    """Return the message of a rotor speed [rad/s] and a keyphasor angle [rad]."""
+    header = Header(stamp=stamp.to_msg())
+    return JointState(header=header, name=["rotor"], position=[angle], velocity=[speed])
+
+
+def eccentricity_message(stamp: Time, frame: str, journals: Journals) -> JointState:
+    """Return the eccentricities of all journals, of their clearances."""
+    named = (pair for name, motion in journals.items() for pair in _eccentricities(name, motion))
+    return _positions(stamp, frame, named)
+
+
+def harmonics_message(stamp: Time, frame: str, journals: Journals) -> JointState:
+    """Return the harmonics of all journals: x = X0 + sum A_i cos(i W t - phase_i), and so y.
+
+    The mean X0 and the amplitudes A_i, zero to peak, are in metres. The phases are lags [rad], as
+    in vibration monitoring.
+    """
+    named = (pair for name, motion in journals.items() for pair in _harmonics(name, motion))
+    return _positions(stamp, frame, named)
+
+
+def heartbeat_message(stamp: Time, frame: str) -> Header:
+    """Return a sign of life."""
+    return Header(stamp=stamp.to_msg(), frame_id=frame)
+
+
+def diagnostics_message(
+    stamp: Time, node: str, hardware: str, statuses: Iterable[Status]
+) -> DiagnosticArray:
+    """Return what a node says about itself, named `node: subject` after REP 107."""
+    array = DiagnosticArray(header=Header(stamp=stamp.to_msg()))
+    array.status = [
+        DiagnosticStatus(
+            level=bytes([status.level]),
+            name=f"{node}: {status.subject}",
+            message=status.message,
+            hardware_id=hardware,
+            values=[KeyValue(key=key, value=value) for key, value in status.values.items()],
+        )
+        for status in statuses
+    ]
+    return array
+
+
+def _positions(stamp: Time, frame: str, named: Named) -> JointState:
+    """Return a message of named numbers."""
+    names, values = zip(*named, strict=True)
+    header = Header(stamp=stamp.to_msg(), frame_id=frame)
+    return JointState(header=header, name=names, position=values)
+
+
+def _eccentricities(damper: str, motion: JournalMotion) -> Named:
+    """Yield the eccentricities of one journal with their names."""
+    static_x, static_y = motion.coefficients[0] / motion.clearance
+    yield f"{damper}/max", motion.eccentricity_max
+    yield f"{damper}/mean", motion.eccentricity_mean
+    yield f"{damper}/static_x", float(static_x)
+    yield f"{damper}/static_y", float(static_y)
+
+
+def _harmonics(damper: str, motion: JournalMotion) -> Named:
+    """Yield the harmonics of one journal with their names."""
+    for axis, cos, sin in zip("xy", motion.cos.T.tolist(), motion.sin.T.tolist(), strict=True):
+        yield f"{damper}/{axis}/0x", cos[0]
+        for order in range(1, len(cos)):
+            harmonic = f"{damper}/{axis}/{order}x"
+            yield f"{harmonic}/amplitude", math.hypot(cos[order], sin[order])
+            yield f"{harmonic}/phase", math.atan2(sin[order], cos[order])
+
+
+def read_eccentricities(message: JointState) -> dict[str, tuple[float, float]]:
+    """Return the greatest and the mean eccentricity of every damper, NaN for what is left out.
+
+    Raises
+    ------
+    InputError
+        If names and numbers do not pair.
+    """
+    greatest, mean = {}, {}
+    for name, value in _named(message):
+        match name.split("/"):
+            case [damper, "max"]:
+                greatest[damper] = value
+            case [damper, "mean"]:
+                mean[damper] = value
+    return {damper: (value, mean.get(damper, math.nan)) for damper, value in greatest.items()}
+
+
+def read_x_amplitudes(message: JointState) -> dict[str, list[float]]:
+    """Return the amplitudes of x of every damper from 1x on, zero to peak [m].
+
+    Raises
+    ------
+    InputError
+        If names and numbers do not pair.
+    """
+    amplitudes: dict[str, list[float]] = {}
+    for name, value in _named(message):
+        match name.split("/"):
+            case [damper, "x", _, "amplitude"]:
+                amplitudes.setdefault(damper, []).append(value)
+    return amplitudes
+
+
+def read_diagnostics(message: DiagnosticArray, node: str) -> Iterator[tuple[str, int, str]]:
+    """Yield name, level and message of every status of a node, whatever its namespace."""
+    for status in message.status:
+        if status.name.partition(": ")[0].rpartition("/")[2] == node:
+            yield status.name, status.level[0], status.message
+
+
+def _named(message: JointState) -> Named:
+    """Yield the named positions of a message."""
+    if len(message.name) != len(message.position):
+        raise InputError(
+            f"position must hold a number for each of the {len(message.name)} names, "
+            f"not {len(message.position)}"
+        )
+    yield from zip(message.name, message.position, strict=True)

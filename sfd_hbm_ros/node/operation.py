@@ -1,0 +1,160 @@
+"""The work of the predictor: what arrives, and what is predicted and published of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from geometry_msgs.msg import WrenchStamped
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.lifecycle import LifecycleNode
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.time import Time
+from sensor_msgs.msg import JointState
+
+from sfd_hbm_ros.machine import MachineError
+from sfd_hbm_ros.node import messages
+from sfd_hbm_ros.node.inputs import Drops, Feed, InputError, Pending
+from sfd_hbm_ros.node.parameters import Parameters
+from sfd_hbm_ros.node.prediction import Model, Prediction
+
+_QUEUE = 10
+_LOG_PAUSE = 5.0  # s between two log messages about bad input
+
+
+class Operation:
+    """Predicts at the newest speed whenever a speed, a load or a value of the machine changes.
+
+    Its topics live as long as the node, since it takes up to seconds until they are found. What
+    arrives is used as far as the node's state allows.
+
+    Parameters
+    ----------
+    node : LifecycleNode
+        The node.
+    parameters : Parameters
+        The node's parameters.
+
+    Attributes
+    ----------
+    active : bool
+        Whether to predict.
+    model : Model or None
+        The machine; None while there is none.
+    prediction : Prediction or None
+        The last one since the node became active.
+    predictions, failures : int
+        How many there were, and how many of them without a solution.
+    speed, load : Feed
+        What arrived.
+    """
+
+    def __init__(self, node: LifecycleNode, parameters: Parameters) -> None:
+        self.active = False
+        self.model: Model | None = None
+        self.prediction: Prediction | None = None
+        self.predictions = 0
+        self.failures = 0
+        self._node = node
+        self._parameters = parameters
+        self._pending: Pending[int] = Pending(parameters["publish_rate"])
+        self._eccentricity = node.create_lifecycle_publisher(JointState, "~/eccentricity", _QUEUE)
+        self._harmonics = node.create_lifecycle_publisher(JointState, "~/harmonics", _QUEUE)
+        newest = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        speed = node.create_subscription(JointState, "~/speed", self._on_speed, newest)
+        load = node.create_subscription(WrenchStamped, "~/load", self._on_load, _QUEUE)
+        self.speed: Feed[float] = Feed(speed.topic_name)
+        self.load: Feed[tuple[float, float]] = Feed(load.topic_name)
+        # The period is set when it is needed; the node's own clock may stand still.
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._due = node.create_timer(1.0, self._predict, clock=steady, autostart=False)
+
+    def stop(self) -> None:
+        """Predict no more, and forget what will not hold any longer at the next start."""
+        self.active = False
+        self.prediction = None
+        self.speed.forget()
+        if self.model is not None:
+            self.model.forget()
+
+    def release(self) -> None:
+        """Stop, and forget the machine and its loads."""
+        self.stop()
+        self.model = None
+        self.load.forget()
+
+    def update(self) -> None:
+        """Take account of changed parameters."""
+        self._pending.rate = self._parameters["publish_rate"]
+
+    def predict_again(self) -> None:
+        """Predict once more, as the machine has changed: soon, whoever changed it hears first."""
+        self._pending.put(self._clock())
+        self._schedule()
+
+    def _on_speed(self, message: JointState) -> None:
+        if not self.active:
+            return
+        with self._dropping(self.speed):
+            speed = messages.read_speed(message)
+            stamp = messages.read_stamp(message.header)
+            stamp = self.speed.accept(speed, stamp, self._clock(), time.monotonic())
+            self._request(stamp)
+
+    def _on_load(self, message: WrenchStamped) -> None:
+        with self._dropping(self.load):
+            if self.model is None:
+                raise InputError("there is no machine yet: the node is not configured")
+            load = self.model.checked_load(*messages.read_load(message))
+            stamp = messages.read_stamp(message.header)
+            # The loads of several stations may come from several publishers.
+            stamp = self.load.accept(
+                load.force, stamp, self._clock(), time.monotonic(), stream=load.station
+            )
+            self.model.add(load)
+            self._request(stamp)
+
+    @contextmanager
+    def _dropping(self, feed: Drops) -> Iterator[None]:
+        """Count an input that turns out to be unusable, and say why."""
+        try:
+            yield
+        except (InputError, MachineError) as error:
+            feed.drop(str(error), time.monotonic())
+            text = f"dropped from {feed.source}: {error}"
+            self._node.get_logger().warning(text, throttle_duration_sec=_LOG_PAUSE)
+
+    def _request(self, stamp: int) -> None:
+        """Predict with a stamp [ns], now or as soon as the rate allows it."""
+        self._pending.put(stamp)
+        if self._pending.wait(time.monotonic()) > 0.0:
+            self._schedule()
+        else:
+            self._predict()
+
+    def _schedule(self) -> None:
+        """Have the timer predict when the rate allows it."""
+        self._due.timer_period_ns = int(self._pending.wait(time.monotonic()) * 1e9)
+        self._due.reset()
+
+    def _predict(self) -> None:
+        """Predict and publish, if the node is active and the speed fresh."""
+        self._due.cancel()
+        now = time.monotonic()
+        stamp, speed = self._pending.take(now), self.speed.value
+        fresh = self.speed.age(now) <= self._parameters["stale_after"]
+        if not (self.active and self.model and fresh) or stamp is None or speed is None:
+            return
+        self.prediction = self.model.predict(speed)
+        self.predictions += 1
+        self.failures += self.prediction.failed
+        header = Time(nanoseconds=stamp), self._parameters["frame_id"]
+        journals = self.prediction.journals
+        self._eccentricity.publish(messages.eccentricity_message(*header, journals))
+        self._harmonics.publish(messages.harmonics_message(*header, journals))
+
+    def _clock(self) -> int:
+        """Return the time by the node's clock [ns]."""
+        return int(self._node.get_clock().now().nanoseconds)

@@ -1,0 +1,130 @@
+"""The predictor's parameters as ROS holds them: declared, converted and given back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from sfd_hbm_ros.machine import Machine
+from sfd_hbm_ros.machine.errors import show_key, unknown
+from sfd_hbm_ros.node.prediction import overridden
+from sfd_hbm_ros.node.schema import SCHEMA, ParameterError, Spec, machine_schema
+
+_SECTIONS = ("dampers", "unbalance", "gravity")
+
+
+class Parameters:
+    """The parameters of a node, and those given at its start that it could not take.
+
+    Parameters
+    ----------
+    node : Node
+        The node, to which the parameters that do not depend on the machine are declared.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        # rclpy has no public way to ask for them: its automatic declaration ends the node where
+        # a parameter file holds an empty list.
+        self._given = {name: p.value for name, p in node._parameter_overrides.items()}
+        self._refused: dict[str, str] = {}
+        self._specs = {spec.name: spec for spec in SCHEMA}
+        self._machine: dict[str, Spec] = {}
+        for spec in SCHEMA:
+            self._declare(spec, self._first_value(spec))
+        self._warn(name for name in self._given if name.partition(".")[0] not in _SECTIONS)
+
+    def __getitem__(self, name: str) -> Any:
+        """Return the value of a parameter."""
+        return self._node.get_parameter(name).value
+
+    def check_given(self) -> None:
+        """Check that what was given at the start has been taken, or set since.
+
+        Raises
+        ------
+        ParameterError
+            If it was not allowed.
+        """
+        if self._refused:
+            raise ParameterError("; ".join(self._refused.values()))
+
+    def adopt(self, machine: Machine) -> Machine:
+        """Declare the values of a machine, and return it with those given at the start.
+
+        Raises
+        ------
+        ParameterError, MachineError
+            If a value given at the start is not allowed.
+        """
+        specs = {spec.name: spec for spec in machine_schema(machine)}
+        given = {
+            name: spec.convert(self._given[name])
+            for name, spec in specs.items()
+            if name in self._given
+        }
+        machine = overridden(machine, given)
+        for name, spec in specs.items():
+            self._declare(spec, given.get(name, spec.default))
+            self._machine[name] = spec
+        self._warn(name for name in self._given if name.partition(".")[0] in _SECTIONS)
+        return machine
+
+    def release(self) -> None:
+        """Undeclare the values of the machine."""
+        for name in self._machine:
+            self._node.undeclare_parameter(name)
+        self._machine = {}
+
+    def converted(self, parameters: Iterable[Parameter]) -> list[Parameter]:
+        """Return parameters that are to be set, in the types that they were declared with.
+
+        Raises
+        ------
+        ParameterError
+            If one is unknown, of the wrong type or out of its range.
+        """
+        return [self._converted(parameter) for parameter in parameters]
+
+    def machine_values(self, parameters: Iterable[Parameter]) -> dict[str, Any]:
+        """Return the values of the machine among parameters, by their paths."""
+        return {p.name: p.value for p in parameters if p.name in self._machine}
+
+    def take(self, parameters: Sequence[Parameter]) -> None:
+        """Note that parameters have been set, which amends what was given at the start."""
+        for parameter in parameters:
+            self._refused.pop(parameter.name, None)
+
+    def _converted(self, parameter: Parameter) -> Parameter:
+        """Return one parameter in the type that it was declared with."""
+        known = self._specs | self._machine
+        if parameter.name in known:
+            value = known[parameter.name].convert(parameter.value)
+            return Parameter(parameter.name, value=value)
+        if self._node.has_parameter(parameter.name):  # of every node, as use_sim_time is
+            return parameter
+        raise ParameterError(f"{show_key(parameter.name)} {unknown(parameter.name, known)}")
+
+    def _first_value(self, spec: Spec) -> Any:
+        """Return the value given at the start, or the default if that is refused."""
+        try:
+            return spec.convert(self._given.get(spec.name, spec.default))
+        except ParameterError as error:
+            self._refused[spec.name] = str(error)
+            return spec.default
+
+    def _declare(self, spec: Spec, value: Any) -> None:
+        """Declare a parameter to ROS."""
+        self._node.declare_parameter(spec.name, value, spec.descriptor, ignore_override=True)
+
+    def _warn(self, given: Iterable[str]) -> None:
+        """Warn of parameters given at the start that the node does not know."""
+        known = self._specs | self._machine
+        for name in given:
+            if name not in known and not self._node.has_parameter(name):
+                self._node.get_logger().warning(
+                    f"parameter {show_key(name)} {unknown(name, known)}; it has no effect"
+                )

@@ -1,0 +1,172 @@
+"""The lifecycle node `predictor`: its states, its parameters and what it says about itself."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.parameter import Parameter
+
+from sfd_hbm_ros.machine import MachineError, read_machine
+from sfd_hbm_ros.node import diagnostics, guard
+from sfd_hbm_ros.node.inputs import Drops
+from sfd_hbm_ros.node.operation import Operation
+from sfd_hbm_ros.node.parameters import Parameters
+from sfd_hbm_ros.node.prediction import Model, overridden
+from sfd_hbm_ros.node.process import run
+from sfd_hbm_ros.node.reporter import Reporter
+from sfd_hbm_ros.node.schema import ParameterError
+
+_SUCCESS = TransitionCallbackReturn.SUCCESS
+_LOG_PAUSE = 5.0  # s between two log messages about exceptions
+
+
+class Predictor(LifecycleNode):
+    """Predicts how the journals move at the speed and under the loads that arrive.
+
+    The README has its topics, config/predictor.yaml its parameters.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("predictor")
+        self._label = "unconfigured"
+        self._problem = ""
+        self._exceptions = Drops("requests")
+        # not _parameters, which rclpy's Node has of its own
+        self._known = Parameters(self)
+        self.add_on_set_parameters_callback(self._check)
+        self.add_post_set_parameters_callback(self._apply)
+        self._operation = Operation(self, self._known)
+        self._reporter = Reporter(self, self._hardware, self._statuses)
+        guard.answer_always(self, self.caught)
+        if self._known["autostart"] and self.trigger_configure() == _SUCCESS:
+            self.trigger_activate()
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Read the machine file; a bad one leaves the node unconfigured."""
+        try:
+            self._known.check_given()
+            path = self._known["machine_file"]
+            if not path:
+                raise ParameterError("machine_file must be the path of a machine file, not empty")
+            machine = self._known.adopt(read_machine(path))
+            self._operation.model = Model(machine, self._known["harmonics"])
+        except Exception as error:  # whatever it is, the node stays up and says it
+            self._release("unconfigured")
+            self._problem = str(error)
+            self.get_logger().error(f"cannot be configured: {self._problem}")
+            return TransitionCallbackReturn.FAILURE
+        self._label, self._problem = "inactive", ""
+        self.get_logger().info(f"configured with {path}")
+        return super().on_configure(state)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Begin to predict."""
+        self._label, self._operation.active = "active", True
+        self.get_logger().info("active")
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Predict no more; loads and values are still taken."""
+        self._label = "inactive"
+        self._operation.stop()
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Forget the machine with all that was changed in it."""
+        self._release("unconfigured")
+        return super().on_cleanup(state)
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Forget the machine for good."""
+        self._release("finalized")
+        return super().on_shutdown(state)
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Return to the start after a transition that raised an exception."""
+        self._release("unconfigured")
+        return super().on_error(state)
+
+    def _release(self, label: str) -> None:
+        """Give up the machine."""
+        self._label, self._problem = label, ""
+        self._operation.release()
+        self._known.release()
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set parameters together, or none for a reason; both parameter services end here."""
+        try:
+            converted = self._known.converted(parameter_list)
+        except ParameterError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return super().set_parameters_atomically(converted)
+
+    def _check(self, parameters: list[Parameter]) -> SetParametersResult:
+        """Say whether parameters can be set, without setting anything."""
+        model = self._operation.model
+        if model is None:
+            return SetParametersResult(successful=True)
+        if any(parameter.name == "machine_file" for parameter in parameters):
+            reason = "machine_file can only be changed while the node is unconfigured: clean it up"
+            return SetParametersResult(successful=False, reason=reason)
+        try:
+            overridden(model.machine, self._known.machine_values(parameters))
+        except MachineError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _apply(self, parameters: list[Parameter]) -> None:
+        """Let parameters that have been set take effect."""
+        self._known.take(parameters)
+        self._operation.update()
+        model, values = self._operation.model, self._known.machine_values(parameters)
+        if model is not None and (values or any(p.name == "harmonics" for p in parameters)):
+            model.change(overridden(model.machine, values), self._known["harmonics"])
+            self._operation.predict_again()
+
+    def caught(self, error: Exception) -> None:
+        """Count an exception that a callback raised, and say which."""
+        text = f"{type(error).__name__}: {error}"
+        self._exceptions.drop(text, time.monotonic())
+        self.get_logger().error(f"caught {text}", throttle_duration_sec=_LOG_PAUSE)
+
+    def _hardware(self) -> str:
+        """Return the name of the machine."""
+        model = self._operation.model
+        if model is None:
+            return ""
+        return model.machine.name or Path(self._known["machine_file"]).stem
+
+    def _statuses(self) -> list[diagnostics.Status]:
+        """Return how the node fares."""
+        work = self._operation
+        return [
+            diagnostics.model_status(
+                self._label, self._problem, self._known["machine_file"], work.model
+            ),
+            diagnostics.solver_status(work.prediction, work.predictions, work.failures),
+            diagnostics.inputs_status(
+                work.active,
+                work.speed,
+                [work.load, self._exceptions],
+                self._known["stale_after"],
+                time.monotonic(),
+            ),
+        ]
+
+
+def main() -> int:
+    """Run the predictor until SIGINT or SIGTERM."""
+    return run("predictor", Predictor, _spin)
+
+
+def _spin(predictor: Predictor) -> int:
+    guard.spin(predictor, predictor.caught)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

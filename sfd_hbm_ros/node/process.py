@@ -1,0 +1,71 @@
+"""A node as a process: signals end it cleanly, its user's mistakes with one sentence."""
+
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from typing import TypeVar
+
+import rclpy
+from rclpy.exceptions import ParameterException
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.utilities import get_default_context, try_shutdown
+
+from sfd_hbm_ros.machine import MachineError
+
+N = TypeVar("N", bound=Node)
+
+BAD_INPUT = 2
+"""Exit code where the command line or a parameter is wrong."""
+
+
+def run(name: str, make: Callable[[], N], work: Callable[[N], int]) -> int:
+    """Make a node, let it work and return the exit code of the process.
+
+    Parameters
+    ----------
+    name : str
+        Who speaks in the sentence about a mistake.
+    make : callable
+        Returns the node; raises MachineError if its parameters are wrong.
+    work : callable
+        Spins the node and returns the exit code.
+
+    Returns
+    -------
+    int
+        What `work` returned, 0 after SIGINT or SIGTERM, or 2 with a sentence on standard error
+        for wrong arguments or parameters.
+    """
+    try:
+        node = _made(name, make)
+        return BAD_INPUT if node is None else work(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        return 0
+    finally:
+        # After a signal rclpy shuts down in a thread of its own, and fails where that is faster.
+        with suppress(RuntimeError):
+            try_shutdown()
+
+
+def _made(name: str, make: Callable[[], N]) -> N | None:
+    """Return the node, or nothing after a sentence about its user's mistake."""
+    try:
+        rclpy.init()
+    except RuntimeError as error:  # as rcl's errors are
+        _complain(name, f"bad ROS arguments: {error}")
+        return None
+    try:
+        return make()
+    except Exception as error:
+        if not get_default_context().ok():
+            raise ExternalShutdownException from error  # a signal came while it was made
+        if not isinstance(error, (MachineError, ParameterException, RuntimeError)):
+            raise
+        _complain(name, str(error))
+        return None
+
+
+def _complain(name: str, mistake: str) -> None:
+    """Print a sentence on standard error."""
+    print(f"{name}: {mistake}", file=sys.stderr)

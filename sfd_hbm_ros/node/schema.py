@@ -1,0 +1,133 @@
+"""The predictor's parameters, declared once: name, default, meaning, unit and range."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+
+from sfd_hbm_ros.machine import Damper, Machine, Unbalance
+from sfd_hbm_ros.machine.errors import show
+from sfd_hbm_ros.machine.rules import Rule
+
+Value = bool | int | float | str
+
+_WORDS = {bool: "true or false", int: "an integer", float: "a number", str: "text"}
+
+
+class ParameterError(ValueError):
+    """A parameter that cannot be, in one sentence."""
+
+
+@dataclass(frozen=True)
+class Spec:
+    """What a parameter means and may be.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    default : bool, int, float or str
+        Its value unless given; its type is the parameter's.
+    about : str
+        What it is, for people.
+    unit : str
+        Its unit, if it has one.
+    least, most : float
+        Range of a number, both or neither.
+    read_only : bool
+        Whether it can only be given at the start.
+    """
+
+    name: str
+    default: Value
+    about: str
+    unit: str = ""
+    least: float = -math.inf
+    most: float = math.inf
+    read_only: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """What it may be, in words."""
+        words = _WORDS[type(self.default)]
+        limits = f" from {self.least:g} to {self.most:g}" if self._limited else ""
+        return words + limits + (f" [{self.unit}]" if self.unit else "")
+
+    @property
+    def descriptor(self) -> ParameterDescriptor:
+        """What ROS tools show of it; filled in anew for every declaration, as rclpy keeps it."""
+        unit = f" [{self.unit}]" if self.unit else ""
+        descriptor = ParameterDescriptor(description=self.about + unit, read_only=self.read_only)
+        if self._limited and isinstance(self.default, float):
+            limits = FloatingPointRange(from_value=self.least, to_value=self.most)
+            descriptor.floating_point_range = [limits]
+        elif self._limited:
+            steps = IntegerRange(from_value=int(self.least), to_value=int(self.most), step=1)
+            descriptor.integer_range = [steps]
+        return descriptor
+
+    def convert(self, value: object) -> Value:
+        """Return a value in the parameter's type: an integer is a number too.
+
+        Raises
+        ------
+        ParameterError
+            If the value is of another type or out of the range.
+        """
+        kind = type(self.default)
+        if kind is float and type(value) is int:
+            value = float(value)
+        if type(value) is not kind or not self._holds(value):
+            raise ParameterError(f"{self.name} must be {self.allowed}, not {show(value)}")
+        return value
+
+    def _holds(self, value: Value) -> bool:
+        """Return whether a value lies in the range; NaN lies in none."""
+        if not self._limited or isinstance(value, str):
+            return True
+        return self.least <= value <= self.most
+
+    @property
+    def _limited(self) -> bool:
+        return math.isfinite(self.least)
+
+
+SCHEMA = (
+    Spec(
+        "machine_file",
+        "",
+        "path of the machine file; it can be changed while the node is unconfigured",
+    ),
+    Spec("frame_id", "rotor", "frame of x and y in the headers of what is published"),
+    Spec("harmonics", 7, "highest harmonic of the speed in the prediction", "", 1, 31),
+    Spec("publish_rate", 100.0, "most predictions a second", "Hz", 0.1, 1000.0),
+    Spec("stale_after", 1.0, "age of the last speed that ends the predictions", "s", 0.05, 3600.0),
+    Spec(
+        "autostart",
+        True,
+        "whether the node configures and activates itself at the start",
+        read_only=True,
+    ),
+)
+
+
+def machine_schema(machine: Machine) -> Iterator[Spec]:
+    """Yield the machine's values that can be changed live, by their paths in the machine file.
+
+    What a value may be is for the machine itself to say; the types alone are declared.
+    """
+    for damper in machine.dampers:
+        for key in ("viscosity", "centering_stiffness"):
+            yield _spec(damper, f"{damper.where}.{key}", key, Damper.rules[key])
+    for unbalance in machine.unbalance:
+        for key in ("magnitude", "phase"):
+            yield _spec(unbalance, f"{unbalance.where}.{key}", key, Unbalance.rules[key])
+    yield _spec(machine, "gravity", "gravity", Machine.rules["gravity"])
+
+
+def _spec(part: object, name: str, key: str, rule: Rule) -> Spec:
+    """Return the parameter of one entry of the machine file."""
+    return Spec(name, getattr(part, key), f"{rule.about}: {rule.allowed}")
