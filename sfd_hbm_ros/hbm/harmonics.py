@@ -107,6 +107,11 @@ class Harmonics:
         return self.basis_at(angle), self.basis_at(angle, 1), self.basis_at(angle, 2)
 
     @cached_property
+    def fine_basis(self) -> Array:
+        """Basis at 512 angles a revolution, at which orbits are searched for their extremes."""
+        return self.basis_at(self.angles(512 * self.revolutions))
+
+    @cached_property
     def projection(self) -> Array:
         """Matrix (rows, samples) from time samples to coefficients."""
         projection: Array = self.bases[0].T * (2.0 / self.samples)

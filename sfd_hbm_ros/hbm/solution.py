@@ -51,11 +51,16 @@ class JournalMotion:
         return self.at(self.harmonics.angles(points))
 
     @cached_property
+    def _samples(self) -> Array:
+        """Positions over one period, finely sampled [m]."""
+        samples: Array = self.harmonics.fine_basis @ self.coefficients
+        return samples
+
+    @cached_property
     def eccentricity_max(self) -> float:
         """Greatest eccentricity sqrt(x^2 + y^2)/c of the orbit (Eq. 15)."""
-        points = _ORBIT_POINTS * self.harmonics.revolutions
-        angle = self.harmonics.angles(points)
-        squares = (self.orbit(points) ** 2).sum(axis=1)
+        squares = (self._samples**2).sum(axis=1)
+        angle = self.harmonics.angles(len(squares))
         best = int(np.argmax(squares))
         refined = angle[best : best + 1]
         for _ in range(4):  # Newton's method on the derivative of the squared distance
@@ -71,8 +76,7 @@ class JournalMotion:
     @cached_property
     def eccentricity_mean(self) -> float:
         """Eccentricity averaged over the period."""
-        orbit = self.orbit(_ORBIT_POINTS * self.harmonics.revolutions)
-        return float(np.linalg.norm(orbit, axis=1).mean()) / self.clearance
+        return float(np.linalg.norm(self._samples, axis=1).mean()) / self.clearance
 
     def at(self, angle: Array, derivative: int = 0) -> Array:
         """Positions at rotor angles [rad], or their derivatives by the angle, (len(angle), 2)."""

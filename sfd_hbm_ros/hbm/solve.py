@@ -4,14 +4,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.balance import Equations, HarmonicBalance
-from sfd_hbm_ros.hbm.continuation import Branch
-from sfd_hbm_ros.hbm.family import LoadFamily
+from sfd_hbm_ros.hbm.continuation import Branch, ContinuationOptions
+from sfd_hbm_ros.hbm.family import LoadFamily, SpeedFamily
 from sfd_hbm_ros.hbm.newton import DEFAULTS, NewtonOptions, NewtonResult, Outcome, newton
 from sfd_hbm_ros.hbm.solution import JournalMotion, Solution
 from sfd_hbm_ros.rotor import ResonanceError
 
 Array = NDArray[np.float64]
 
+_SHORT = ContinuationOptions(longest_step=0.1, points=150)  # a live prediction has to end
+_DETOUR = 0.05  # of the speed, by which a branch may turn back between two folds
 _GUESS_LIMIT = 0.7  # eccentricity to which a linear guess is scaled down
 
 
@@ -30,9 +32,10 @@ def solve(
     speed : float
         Rotor speed [rad/s], positive.
     start : Solution, optional
-        A converged solution nearby, tried first: on the branch that it lies on where there are
-        several. Otherwise, and where it does not lead to a solution, the response with the
-        films' linear coefficients is the start, and if need be the load is raised step by step.
+        A converged solution at a speed nearby. Newton's method starts from it and, where that
+        fails, its branch is followed to the speed, through folds. Otherwise the
+        response with the films' linear coefficients is the start, and if need be the load is
+        raised step by step.
     options : NewtonOptions
         Tolerance and limits.
 
@@ -57,6 +60,8 @@ def solve(
         x = balance.harmonics.change_from(start.harmonics, start.coefficients).ravel()
         if equations.eccentricity(x) < 1.0:
             result = newton(equations, x, options)
+            if not result.outcome.converged and start.speed != speed:
+                result = _follow_speed(balance, start.speed, x, speed, options)
     message = Outcome.CONVERGED.value
     if result is None or not result.outcome.converged:
         result, message = solve_equations(equations, options)
@@ -111,6 +116,27 @@ def raise_load(equations: Equations, options: NewtonOptions) -> tuple[NewtonResu
     return result, message
 
 
+def _follow_speed(
+    balance: HarmonicBalance, start: float, x: Array, speed: float, options: NewtonOptions
+) -> NewtonResult | None:
+    """Follow the branch through x at the speed `start` to where it comes through another speed.
+
+    Where it turns back on the way, it is followed through its folds: a machine that jumps there
+    lands on what comes behind them. None where the branch does not lead to the speed.
+    """
+    behind = start - np.sign(speed - start) * _DETOUR * start
+    try:
+        corrected = newton(balance.at(start), x, options)  # the machine may have changed since
+        if not corrected.outcome.converged:
+            return None
+        *_, last = Branch(
+            SpeedFamily(balance), corrected.x, start, speed, (behind, speed), _SHORT, options
+        )
+        return newton(balance.at(speed), last.x, options) if last.value == speed else None
+    except ResonanceError:
+        return None
+
+
 def _follow_load(
     equations: Equations, base: Array, part: Array, x: Array, options: NewtonOptions
 ) -> tuple[NewtonResult, str]:
@@ -118,7 +144,8 @@ def _follow_load(
 
     It is followed by arclength, as it may fold on the way.
     """
-    branch = Branch(LoadFamily(equations, base, part), x, 0.0, 1.0, newton=options)
+    family = LoadFamily(equations, base, part)
+    branch = Branch(family, x, 0.0, 1.0, options=_SHORT, newton=options)
     *_, last = branch
     result = newton(equations.with_force(base + last.value * part), last.x, options)
     if last.value == 1.0 and result.outcome.converged:
