@@ -1,0 +1,41 @@
+"""What varies along a response curve, as people read it."""
+
+from dataclasses import dataclass
+
+from sfd_hbm_ros.hbm.family import ParameterFamily
+from sfd_hbm_ros.report.units import RPM, grouped
+from sfd_hbm_ros.response.curve import ResponseCurve
+
+
+@dataclass(frozen=True)
+class Abscissa:
+    """The speed in rpm, or an entry of the machine file in its SI unit.
+
+    Parameters
+    ----------
+    path : str or None
+        Dotted path of the entry; None for the speed.
+    """
+
+    path: str | None
+
+    @classmethod
+    def of(cls, curve: ResponseCurve) -> "Abscissa":
+        """That of a curve."""
+        return cls(curve.family.path if isinstance(curve.family, ParameterFamily) else None)
+
+    @property
+    def unit(self) -> float:
+        """Unit of the abscissa, in that of the curve's values."""
+        return RPM if self.path is None else 1.0
+
+    @property
+    def title(self) -> str:
+        """What it is, with its unit."""
+        return "speed [rpm]" if self.path is None else f"{self.path} [SI unit]"
+
+    def worded(self, value: float) -> str:
+        """A value of a curve, for people."""
+        if self.path is None:
+            return f"{grouped(round(value / RPM, 1))} rpm"
+        return f"{value:.4g}"

@@ -1,0 +1,68 @@
+"""A response curve as a table of numbers."""
+
+import csv
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+
+from sfd_hbm_ros.report.abscissa import Abscissa
+from sfd_hbm_ros.report.units import RPM
+from sfd_hbm_ros.response.curve import ResponseCurve
+
+
+def write_table(curve: ResponseCurve, path: str | Path) -> None:
+    """Write a curve as CSV: one row a point, branch by branch in the order of the arc.
+
+    Columns are the speed [rpm], the entry of the machine file if one varies, whether the point is
+    stable (1 or 0), and of each damper the greatest eccentricity and the coefficients of Eq. 2
+    [m]: mean, then cosine and sine of each order, of x and then of y. Numbers are written in full
+    precision.
+
+    Parameters
+    ----------
+    curve : ResponseCurve
+        The curve.
+    path : str or Path
+        The file.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(_header(curve))
+        writer.writerows(_rows(curve))
+
+
+def _header(curve: ResponseCurve) -> list[str]:
+    harmonics = curve.balance.harmonics
+    orders = [Fraction(multiple, harmonics.revolutions) for multiple in harmonics.multiples]
+    waves = [f"{order}_{wave}" for order in orders[1:] for wave in ("cos", "sin")]
+    coefficients = [f"{axis}_{wave}" for axis in "xy" for wave in ("0", *waves)]
+    varied = Abscissa.of(curve).path
+    return [
+        "speed_rpm",
+        *([] if varied is None else [varied]),
+        "stable",
+        *(
+            f"{damper}.{column}"
+            for damper in curve.dampers
+            for column in ("eccentricity_max", *coefficients)
+        ),
+    ]
+
+
+def _rows(curve: ResponseCurve) -> Iterator[list[float]]:
+    varied, harmonics = Abscissa.of(curve).path, curve.balance.harmonics
+    for branch in curve.branches:
+        for value, solution, stable in zip(
+            branch.values.tolist(), branch.solutions, branch.stable, strict=True
+        ):
+            row = [solution.speed / RPM, *([] if varied is None else [value]), int(stable)]
+            for damper in curve.dampers:
+                motion = solution.journals[damper]
+                coefficients = harmonics.change_from(motion.harmonics, motion.coefficients)
+                row += [motion.eccentricity_max, *coefficients.T.ravel().tolist()]
+            yield row

@@ -1,0 +1,19 @@
+"""Units and numbers as people read them."""
+
+import math
+
+RPM = math.pi / 30.0
+"""One revolution a minute [rad/s]."""
+
+HERTZ = 2.0 * math.pi
+"""One cycle a second [rad/s]."""
+
+MICROMETRE = 1e-6
+"""[m]."""
+
+_THIN_SPACE = "\u2009"
+
+
+def grouped(number: float) -> str:
+    """A number with its thousands set apart."""
+    return f"{number:,.10g}".replace(",", _THIN_SPACE)
