@@ -1,4 +1,4 @@
-"""The command line: `python3 -m sfd_hbm_ros VERB MACHINE ...`, or `sfd_hbm VERB MACHINE ...`.
+"""The command line: `python3 -m sfd_hbm_ros VERB ...`, or `sfd_hbm VERB ...`.
 
 Exit status 0 with the result on standard output; 2 with one sentence on standard error for bad
 input; 1 with one sentence where no solution was found.
@@ -9,12 +9,17 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from sfd_hbm_ros.commands import modes, solve
-from sfd_hbm_ros.commands.arguments import add_machine
-from sfd_hbm_ros.commands.errors import NoSolutionError
+from sfd_hbm_ros.commands import modes, paper, simulate, solve, sweep
 from sfd_hbm_ros.machine import MachineError
+from sfd_hbm_ros.response.curve import NoSolutionError
 
-VERBS = {"solve": solve, "modes": modes}
+VERBS = {
+    "solve": solve,
+    "sweep": sweep,
+    "simulate": simulate,
+    "modes": modes,
+    "paper": paper,
+}
 
 
 class _Parser(argparse.ArgumentParser):
@@ -33,17 +38,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for name, verb in VERBS.items():
         summary = (verb.__doc__ or "").splitlines()[0]
         options = verbs.add_parser(name, help=summary, description=summary)
-        add_machine(options)
         verb.add_options(options)
     chosen = parser.parse_args(arguments)
     try:
         VERBS[chosen.verb].run(chosen)
-    except (MachineError, ValueError) as error:
+    except BrokenPipeError:  # the reader of a pipe has seen enough
+        sys.stderr.close()
+    except (MachineError, ValueError, OSError) as error:
         return _refuse(parser.prog, error, 2)
     except NoSolutionError as error:
         return _refuse(parser.prog, error, 1)
-    except BrokenPipeError:  # the reader of a pipe has seen enough
-        sys.stderr.close()
     return 0
 
 

@@ -13,7 +13,7 @@ RPM = math.pi / 30.0
 
 
 def add_machine(parser: argparse.ArgumentParser) -> None:
-    """Add the machine file, its overrides and the form of the output."""
+    """Add the machine file and its overrides, and the form of the output."""
     parser.add_argument("machine", metavar="MACHINE", help="machine file (YAML)")
     parser.add_argument(
         "--set",
@@ -23,6 +23,11 @@ def add_machine(parser: argparse.ArgumentParser) -> None:
         metavar="PATH=VALUE",
         help="override an entry, such as dampers.damper_1.centering_stiffness=1.75e6",
     )
+    add_json(parser)
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    """Add the form of the output."""
     parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
 
 

@@ -3,12 +3,13 @@
 import argparse
 from typing import Any
 
-from sfd_hbm_ros.commands.arguments import RPM, print_json, read_changed_machine
+from sfd_hbm_ros.commands.arguments import RPM, add_machine, print_json, read_changed_machine
 from sfd_hbm_ros.rotor import assemble, critical_speeds, whirl_modes
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the verb's options."""
+    add_machine(parser)
     parser.add_argument(
         "--rpm", type=float, help="rotor speed [rpm], 0 for the rotor at rest (else: criticals)"
     )

@@ -8,16 +8,18 @@ import numpy as np
 from sfd_hbm_ros.commands.arguments import (
     RPM,
     add_harmonics,
+    add_machine,
     print_json,
     read_changed_machine,
     speed_from,
 )
-from sfd_hbm_ros.commands.errors import NoSolutionError
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion, Solution, solve, stability
+from sfd_hbm_ros.response.curve import NoSolutionError
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the verb's options."""
+    add_machine(parser)
     parser.add_argument("--rpm", type=float, required=True, help="rotor speed [rpm]")
     add_harmonics(parser)
 

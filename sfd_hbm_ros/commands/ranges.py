@@ -1,0 +1,40 @@
+"""Ranges A:B and entries PATH=A:B given on the command line."""
+
+import math
+
+from sfd_hbm_ros.machine import Machine, MachineError, get
+
+
+def range_from(option: str, text: str) -> tuple[float, float]:
+    """Both ends of A:B.
+
+    Raises
+    ------
+    ValueError
+        If the text is not two different finite numbers with a colon between.
+    """
+    try:
+        start, end = (float(part) for part in text.split(":"))
+    except ValueError:
+        start = end = math.nan
+    if not (math.isfinite(start) and math.isfinite(end) and start != end):
+        raise ValueError(f"{option} {text}: must be A:B with two different finite numbers")
+    return start, end
+
+
+def varied_from(text: str, machine: Machine) -> tuple[str, float, float]:
+    """Dotted path and both ends of PATH=A:B.
+
+    Raises
+    ------
+    ValueError
+        If the text has another form, or the entry is not a number.
+    MachineError
+        If there is no such entry.
+    """
+    path, _, ends = text.partition("=")
+    start, end = range_from(f"--vary {path}", ends)
+    value = get(machine, path)
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise MachineError("must be a number to vary", path)
+    return path, start, end

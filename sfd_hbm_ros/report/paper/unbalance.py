@@ -1,0 +1,106 @@
+"""Claims P1 to P3, on larger unbalances (Sec. 4.1)."""
+
+import numpy as np
+
+from sfd_hbm_ros.hbm import stability
+from sfd_hbm_ros.report.paper.cases import Claim
+from sfd_hbm_ros.report.paper.disturbed import third_harmonic
+from sfd_hbm_ros.report.paper.judging import Judgement, judged, listed, near, undecided
+from sfd_hbm_ros.report.paper.study import Study, journal
+from sfd_hbm_ros.report.units import RPM
+
+
+def p1(study: Study, claim: Claim) -> dict[str, Judgement]:
+    """Three unbalances too small for a jump."""
+    same = study.agreement["same"]
+    peaks = study.peaks(claim.curves)
+    speeds = [peak.rpm for peak in peaks]
+    heights = [peak.amplitude for peak in peaks]
+    widths = [width_of_hysteresis(study, name) for name in claim.curves]
+    ours = f"hysteresis of {listed(widths, '.1f', 'rpm')} on disks 1, 2, 3"
+    no_jump = judged(not any(widths), ours)
+    if 0.0 < max(widths) <= study.agreement["threshold_rpm"]:
+        no_jump = undecided(
+            ours, "the rotor is at the threshold of jumping, nearer than it could be reconstructed"
+        )
+    alike = np.ptp(speeds) <= same * max(speeds) and np.ptp(heights) <= 0.1 * max(heights)
+    return {
+        "no_jump": no_jump,
+        "alike": judged(
+            bool(alike), f"{listed(speeds, '.0f', 'rpm')} with eccentricities {listed(heights)}"
+        ),
+        "order": judged(heights[0] < heights[2] < heights[1], f"eccentricities {listed(heights)}"),
+    }
+
+
+def p2(study: Study, claim: Claim) -> dict[str, Judgement]:
+    """Three unbalances large enough for a jump."""
+    numbers = claim.numbers
+    jumps = [jump.value / RPM for name in claim.curves for jump in study.summary(name).jumps]
+    widths = [width_of_hysteresis(study, name) for name in claim.curves]
+    judgements = {
+        "jumps": judged(all(widths), f"{len(jumps)} jumps on disks 1, 2, 3 together"),
+        "range": judged(
+            numbers["lowest_rpm"] <= min(jumps) and max(jumps) <= numbers["highest_rpm"],
+            f"{min(jumps):.0f} to {max(jumps):.0f} rpm",
+        ),
+        "order": judged(
+            widths[0] < widths[2] < widths[1], f"{listed(widths, '.0f', 'rpm')} on disks 1, 2, 3"
+        ),
+    }
+    for disk, (name, width) in enumerate(zip(claim.curves, widths, strict=True), start=1):
+        agrees = near(width, numbers[f"disk_{disk}_rpm"], study.agreement["width"])
+        ours = f"{width:.1f} rpm"
+        judgements[f"width_{disk}"] = judged(agrees, ours, _beside(study, name, width))
+    return judgements
+
+
+def p3(study: Study, claim: Claim) -> dict[str, Judgement]:
+    """3x in the response of an axisymmetric rotor without a static load.
+
+    It is sought in the harmonic balance, as an instability of the circular orbit, and in time
+    after a disturbance.
+    """
+    numbers, [name] = claim.numbers, claim.curves
+    solution = study.start_up(name, numbers["rpm"])
+    balance = study.curve(name).balance
+    motion = journal(solution)
+    amplitudes = np.linalg.norm(np.hypot(motion.cos, motion.sin), axis=1)
+    leading = np.abs(stability(balance, solution).multipliers[0])
+    first, last = (int(revolutions) for revolutions in numbers["revolutions"])
+    early, late = third_harmonic(balance, solution, numbers["disturbance"], (first, last))
+    ours = (
+        f"3x is {amplitudes[3] / amplitudes[1]:.0e} of 1x at an eccentricity of "
+        f"{solution.eccentricity_max:.3f}; the circular orbit is stable, with a leading Floquet "
+        f"multiplier of {leading:.3f}; integrated in time from a disturbance of "
+        f"{numbers['disturbance']:g} of the clearance, 3x is {early:.0e} of 1x after {first} "
+        f"revolutions and {late:.0e} after {first + last}"
+    )
+    why = (
+        "a circle has no 3x, and no instability makes another orbit of it; an orbit slightly "
+        "elliptic, as before a transient or an iteration has settled, has -1x and 3x and no 2x; "
+        "so has a film integrated over 4 fixed angles: n angles give a circle the orders 1, "
+        "n - 1, n + 1, 2n - 1, ..."
+    )
+    shown = amplitudes[3] > study.agreement["visible"] * amplitudes[1]
+    return {"third": judged(bool(shown), ours, why)}
+
+
+def width_of_hysteresis(study: Study, name: str) -> float:
+    """Distance of the jumps of start-up and coast-down [rpm], 0 where there are none."""
+    return (study.summary(name).hysteresis or 0.0) / RPM
+
+
+def _beside(study: Study, name: str, width: float) -> str:
+    """What detached branches add to a hysteresis."""
+    spans = [
+        (branch.speed.min() / RPM, branch.speed.max() / RPM)
+        for branch in study.computed[name].detached
+    ]
+    if not spans:
+        return ""
+    low, high = min(span[0] for span in spans), max(span[1] for span in spans)
+    return (
+        f"a detached branch, which no run-up meets, lies from {low:.0f} to {high:.0f} rpm: "
+        f"with it, there are several responses over {width + high - low:.0f} rpm"
+    )

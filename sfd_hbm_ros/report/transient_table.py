@@ -1,0 +1,37 @@
+"""A run in time as a table of numbers."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+
+from sfd_hbm_ros.report.units import RPM
+from sfd_hbm_ros.response.transient import Transient
+
+
+def write_transient(transient: Transient, path: str | Path) -> None:
+    """Write a run as CSV, one row a revolution.
+
+    Columns are the time [s] and the speed [rpm] in the middle of the revolution, and the greatest
+    and the mean eccentricity of each damper in it.
+
+    Parameters
+    ----------
+    transient : Transient
+        The run.
+    path : str or Path
+        The file.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    columns = {"time_s": transient.time, "speed_rpm": transient.speed / RPM}
+    for name, greatest in transient.eccentricity_max.items():
+        columns[f"{name}.eccentricity_max"] = greatest
+        columns[f"{name}.eccentricity_mean"] = transient.eccentricity_mean[name]
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(np.column_stack(list(columns.values())).tolist())

@@ -1,0 +1,115 @@
+"""The verb `sweep`: what it prints, the files it writes, and what it refuses."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sfd_hbm_ros.cli import main
+from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
+from sfd_hbm_ros.machine import override, read_machine
+from sfd_hbm_ros.response.curve import response_curve
+
+PAPER = str(Path(__file__).parents[2] / "config" / "paper_rotor.yaml")
+RPM = np.pi / 30.0
+VISCOSITY = "dampers.damper_1.viscosity"
+DISK_1 = {"unbalance.disk_2.station": "disk_1", "unbalance.disk_2.magnitude": "5.039e-4"}
+OPTIONS = [word for path, value in DISK_1.items() for word in ("--set", f"{path}={value}")]
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory):
+    """One sweep with all its files."""
+    folder = tmp_path_factory.mktemp("sweep")
+    return folder / "curve.csv", folder / "curve.png"
+
+
+def test_json_and_files(swept, capsys):
+    table, picture = swept
+    files = ["--output", str(table), "--picture", str(picture)]
+    speeds = ["--rpm", "3900:4100", "--harmonics", "1"]
+    assert main(["sweep", PAPER, *speeds, *OPTIONS, *files, "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    printed = json.loads(out)
+    upper, lower = printed["folds"]
+    assert upper["speed_rpm"] == pytest.approx(4012.05, abs=0.05)
+    assert lower["speed_rpm"] == pytest.approx(3975.07, abs=0.05)
+    assert printed["hysteresis"] == pytest.approx(upper["speed_rpm"] - lower["speed_rpm"])
+    up, down = printed["jumps"]
+    assert (up["direction"], down["direction"]) == ("run_up", "coast_down")
+    assert up["speed_rpm"] == upper["speed_rpm"]
+    assert up["eccentricity_from"] > up["eccentricity_to"] + 0.3
+    assert down["eccentricity_from"] < down["eccentricity_to"] - 0.1
+    assert printed["peak"]["eccentricity"] < up["eccentricity_from"] + 0.02
+    assert printed["seconds"] > 0.0
+    with open(table, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == printed["points"]
+    assert float(rows[0]["speed_rpm"]) == pytest.approx(3900.0)
+    assert float(rows[-1]["speed_rpm"]) == pytest.approx(4100.0)
+    assert {row["stable"] for row in rows} == {"0", "1"}
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_speeds_may_be_given_either_way(capsys):
+    """The response is a set of branches: A:B and B:A are one range."""
+    results = []
+    for speeds in ("3000:3200", "3200:3000"):
+        assert main(["sweep", PAPER, "--rpm", speeds, "--harmonics", "1", "--json"]) == 0
+        results.append(json.loads(capsys.readouterr().out))
+    for result in results:
+        del result["seconds"]
+    assert results[0] == results[1]
+
+
+def test_entry_of_the_machine_file_varies(capsys):
+    vary = ["--vary", "dampers.damper_1.viscosity=0.02:0.05"]
+    command = ["sweep", PAPER, "--rpm", "3800", "--harmonics", "1", "--json"]
+    assert main([*command, *vary]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["folds"] == []
+    peak = printed["peak"]
+    assert peak["speed_rpm"] == pytest.approx(3800.0)
+    machine = override(
+        read_machine(PAPER), "dampers.damper_1.viscosity", peak["dampers.damper_1.viscosity"]
+    )
+    balance = HarmonicBalance(machine, Harmonics(1))
+    [branch] = response_curve(balance, 3800 * RPM, 3801 * RPM).branches
+    assert branch.worst_eccentricity[0] == pytest.approx(peak["eccentricity"], rel=1e-8)
+
+
+def test_text_for_people(capsys):
+    assert main(["sweep", PAPER, "--rpm", "3900:4100", "--harmonics", "1", *OPTIONS]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert "points in" in lines[0]
+    assert sum(line.startswith("fold ") for line in lines) == 2
+    assert sum(line.startswith("jump ") for line in lines) == 2
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (["--rpm", "3000"], "--rpm 3000: must be A:B with two different finite numbers"),
+        (["--rpm", "3:3"], "--rpm 3:3: must be A:B with two different finite numbers"),
+        (["--rpm=-3:9"], "--rpm -3: must be a finite speed above 0 rpm"),
+        (["--rpm", "1:2", "--vary", "gravity=0:1"], "gravity must be a number to vary"),
+        (
+            ["--rpm", "1:2", "--vary", "dampers.damper_1.viscosity=1:2"],
+            "--rpm 1:2: must be a sing",
+        ),
+        (["--rpm", "9", "--vary", "x=1:2"], "x is unknown"),
+        (
+            ["--rpm", "9", "--vary", "dampers.damper_1.viscosity=1"],
+            "--vary dampers.damper_1.visco",
+        ),
+    ],
+)
+def test_bad_input_is_refused(options, sentence, capsys):
+    assert main(["sweep", PAPER, *options]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(f"sfd_hbm: {sentence}")
+    assert err.count("\n") == 1
