@@ -2,8 +2,14 @@
 
 import sys
 import time
+from collections.abc import Callable
+
+from sfd_hbm_ros.commands.arguments import RPM
 
 _INTERVAL = 0.1  # between updates [s]
+_CELLS = 40
+
+Describe = Callable[[int, float], str]
 
 
 class Progress:
@@ -11,23 +17,23 @@ class Progress:
 
     Parameters
     ----------
-    template : str
-        The line, with ``{}`` for the value.
+    describe : callable
+        Returns the line for the number of values so far and the last of them.
     """
 
-    def __init__(self, template: str) -> None:
-        self._template = template
+    def __init__(self, describe: Describe) -> None:
+        self._describe = describe
         self._shown = sys.stderr.isatty()
         self._last = 0.0
-        self._points = 0
+        self._count = 0
 
     def __call__(self, value: float) -> None:
-        """Show a value, at most ten times a second."""
-        self._points += 1
+        """Take a value, and show it at most ten times a second."""
+        self._count += 1
         now = time.monotonic()
         if self._shown and now - self._last >= _INTERVAL:
             self._last = now
-            line = f"{self._points} points, {self._template.format(value)}"
+            line = self._describe(self._count, value)
             print(f"\r\x1b[K{line}", end="", file=sys.stderr, flush=True)
 
     def __enter__(self) -> "Progress":
@@ -36,3 +42,14 @@ class Progress:
     def __exit__(self, *_: object) -> None:
         if self._shown:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+
+def speed_bar(start: float, end: float) -> Describe:
+    """A bar that fills as the speed [rad/s] goes from one end to the other."""
+
+    def describe(_: int, speed: float) -> str:
+        part = (speed - start) / (end - start)
+        cells = "#" * round(part * _CELLS)
+        return f"[{cells:.<{_CELLS}}] {100.0 * part:3.0f} %  {speed / RPM:.0f} rpm"
+
+    return describe

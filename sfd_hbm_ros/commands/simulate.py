@@ -14,7 +14,7 @@ from sfd_hbm_ros.commands.arguments import (
     print_json,
     read_changed_machine,
 )
-from sfd_hbm_ros.commands.bar import Bar
+from sfd_hbm_ros.commands.progress import Progress, speed_bar
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.report.transient_table import write_transient
 from sfd_hbm_ros.response.observed import ObservedJump, observed_jumps
@@ -47,8 +47,8 @@ def run(chosen: argparse.Namespace) -> None:
         raise ValueError(f"--to {chosen.end:g}: must differ from --from {chosen.start:g} rpm")
     balance = HarmonicBalance(read_changed_machine(chosen), Harmonics(chosen.harmonics))
     started = time.perf_counter()
-    with Bar(start, end) as bar:
-        transient = simulate(balance, start, end, rate, progress=bar)
+    with Progress(speed_bar(start, end)) as progress:
+        transient = simulate(balance, start, end, rate, progress=progress)
     seconds = time.perf_counter() - started
     jumps = observed_jumps(transient)
     if chosen.output:

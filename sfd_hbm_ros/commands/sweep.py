@@ -15,7 +15,7 @@ from sfd_hbm_ros.commands.arguments import (
 from sfd_hbm_ros.commands.progress import Progress
 from sfd_hbm_ros.commands.ranges import range_from, varied_from
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
-from sfd_hbm_ros.hbm.continuation import Stop
+from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.response.curve import ResponseCurve, parameter_curve, response_curve
 from sfd_hbm_ros.response.summary import Mark, Summary
 
@@ -70,10 +70,10 @@ def _curve(chosen: argparse.Namespace) -> ResponseCurve:
     if chosen.vary is None:
         lowest, highest = sorted(range_from("--rpm", chosen.rpm))
         speeds = speed_from(lowest), speed_from(highest)
-        with Progress("{:.1f} rad/s") as progress:
+        with Progress(lambda n, speed: f"{n} points, {speed / RPM:.1f} rpm") as progress:
             return response_curve(balance, *speeds, progress=progress)
     path, start, end = varied_from(chosen.vary, machine)
-    with Progress(path + " = {:.6g}") as progress:
+    with Progress(lambda n, value: f"{n} points, {path} = {value:.6g}") as progress:
         return parameter_curve(
             balance, speed_from(_number(chosen.rpm)), path, start, end, progress=progress
         )

@@ -6,15 +6,14 @@ as wide in eccentricity as in the parameter. Folds are passed as any other point
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.balance import Equations
 from sfd_hbm_ros.hbm.family import Family
-from sfd_hbm_ros.hbm.newton import DEFAULTS, NewtonOptions
+from sfd_hbm_ros.hbm.options import DEFAULTS, ContinuationOptions, NewtonOptions
+from sfd_hbm_ros.hbm.points import Point, Stop
 from sfd_hbm_ros.rotor import ResonanceError
 
 Array = NDArray[np.float64]
@@ -24,84 +23,6 @@ _CROWDED = 0.97  # eccentricity beyond which a step that fails shows that no roo
 _ROUNDING = 1e-8  # part of the rotor's forces that may be rounding, where it falls no further
 _STAGNATION = 0.1  # ratio of successive residuals that shows that
 _NUDGE = 1e-9  # of the parameter's range, by which an exact resonance is stepped over
-
-
-class Stop(Enum):
-    """Why a branch ended; the value is a sentence."""
-
-    RANGE = "the end of the parameter's range was reached"
-    CLOSED = "the branch came back to its first point"
-    CLEARANCE = "the orbit closes on the clearance"
-    STEP = "the step became too short for the corrector to converge"
-    POINTS = "the largest number of points was reached"
-
-
-@dataclass(frozen=True)
-class ContinuationOptions:
-    """Settings of the continuation; lengths of the arc are in clearances.
-
-    Parameters
-    ----------
-    first_step, longest_step, shortest_step : float
-        Lengths of the arc.
-    turning : float
-        Largest angle between the tangents of neighbouring points [rad].
-    iterations : int
-        Corrector steps that a point may take.
-    eccentricity : float
-        Eccentricity at which the branch ends, below 1.
-    points : int
-        Largest number of points.
-
-    Raises
-    ------
-    ValueError
-        If a setting is out of its range.
-    """
-
-    first_step: float = 0.01
-    longest_step: float = 0.06
-    shortest_step: float = 1e-7
-    turning: float = 0.3
-    iterations: int = 6
-    eccentricity: float = 0.995
-    points: int = 20_000
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.shortest_step <= self.first_step <= self.longest_step:
-            raise ValueError(
-                f"steps: {self.shortest_step}, {self.first_step}, {self.longest_step} are not "
-                "allowed, they must be positive and rise from shortest over first to longest"
-            )
-        if not 0.0 < self.eccentricity < 1.0:
-            raise ValueError(
-                f"eccentricity: {self.eccentricity} is not allowed, it must be between 0 and 1"
-            )
-
-
-@dataclass(frozen=True, eq=False)
-class Point:
-    """A point of a branch.
-
-    Attributes
-    ----------
-    value : float
-        The parameter.
-    x : (n,) array
-        Coefficients [m].
-    tangent : (n + 1,) array
-        Unit tangent along the branch, of the scaled unknowns; its last entry is the parameter's.
-    eccentricity : float
-        Greatest eccentricity at the time samples.
-    iterations : int
-        Corrector steps that it took.
-    """
-
-    value: float
-    x: Array
-    tangent: Array
-    eccentricity: float
-    iterations: int
 
 
 class Branch:

@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterable, Iterator
 
 from scipy.optimize import brentq
 
-from sfd_hbm_ros.hbm.continuation import Branch, Point
+from sfd_hbm_ros.hbm.continuation import Branch
+from sfd_hbm_ros.hbm.points import Point
 
 _ACCURACY = 1e-6  # of the arc's step in which an event lies
 

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
+from sfd_hbm_ros.hbm.options import DEFAULTS, NewtonOptions
+
 Array = NDArray[np.float64]
 
 _DECREASE = 1e-4  # part of the decrease that a straight line promises which a step must reach
@@ -28,45 +30,6 @@ class Outcome(Enum):
     def converged(self) -> bool:
         """Whether this outcome is a solution."""
         return self is Outcome.CONVERGED
-
-
-@dataclass(frozen=True)
-class NewtonOptions:
-    """Settings of Newton's method.
-
-    Parameters
-    ----------
-    tolerance : float
-        Norm of the residual, relative to the load, below which the forces balance.
-    iterations : int
-        Largest number of linear systems to solve.
-    shortest_step : float
-        Part of Newton's step below which it is given up.
-
-    Raises
-    ------
-    ValueError
-        If a setting is out of its range.
-    """
-
-    tolerance: float = 1e-10
-    iterations: int = 40
-    shortest_step: float = 1e-4
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.tolerance < 1.0:
-            raise ValueError(f"tolerance: {self.tolerance} is not allowed, it must be in (0, 1)")
-        if self.iterations < 1:
-            raise ValueError(
-                f"iterations: {self.iterations} is not allowed, it must be at least 1"
-            )
-        if not 0.0 < self.shortest_step < 1.0:
-            raise ValueError(
-                f"shortest_step: {self.shortest_step} is not allowed, it must be in (0, 1)"
-            )
-
-
-DEFAULTS = NewtonOptions()
 
 
 class System(Protocol):

@@ -6,9 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.hbm.continuation import Branch, ContinuationOptions, Point
+from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.family import SpeedFamily
 from sfd_hbm_ros.hbm.newton import newton
+from sfd_hbm_ros.hbm.options import ContinuationOptions
+from sfd_hbm_ros.hbm.points import Point
 from sfd_hbm_ros.hbm.selection import Neglect, SelectedBalance
 
 Array = NDArray[np.float64]

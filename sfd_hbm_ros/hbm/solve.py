@@ -4,9 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.balance import Equations, HarmonicBalance
-from sfd_hbm_ros.hbm.continuation import Branch, ContinuationOptions
+from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.family import LoadFamily, SpeedFamily
-from sfd_hbm_ros.hbm.newton import DEFAULTS, NewtonOptions, NewtonResult, Outcome, newton
+from sfd_hbm_ros.hbm.newton import NewtonResult, Outcome, newton
+from sfd_hbm_ros.hbm.options import DEFAULTS, ContinuationOptions, NewtonOptions
 from sfd_hbm_ros.hbm.solution import JournalMotion, Solution
 from sfd_hbm_ros.rotor import ResonanceError
 

@@ -19,7 +19,8 @@ from sfd_hbm_ros.report.style import (
     legend,
     shades,
 )
-from sfd_hbm_ros.response.curve import CurveBranch, ResponseCurve
+from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.judged import CurveBranch
 from sfd_hbm_ros.response.jumps import Jump
 
 _MARKERS = {

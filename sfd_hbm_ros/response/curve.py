@@ -1,69 +1,22 @@
 """The response curve of a machine: every branch that a run-up or a coast-down can meet."""
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.hbm import HarmonicBalance, Instability, Solution, solve, stability
-from sfd_hbm_ros.hbm.continuation import Branch, ContinuationOptions, Point, Stop
-from sfd_hbm_ros.hbm.events import locate, with_folds
+from sfd_hbm_ros.hbm import HarmonicBalance, solve
+from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.family import Family, ParameterFamily, SpeedFamily
-from sfd_hbm_ros.hbm.solve import solution_at
+from sfd_hbm_ros.hbm.options import ContinuationOptions
+from sfd_hbm_ros.hbm.points import Stop
+from sfd_hbm_ros.response.judged import CurveBranch, Progress, judged
 
 Array = NDArray[np.float64]
-Progress = Callable[[float], None]
 
 
 class NoSolutionError(RuntimeError):
     """The machine has no solution where one was asked for, or none was found."""
-
-
-@dataclass(frozen=True, eq=False)
-class CurveBranch:
-    """One branch of the response, in the order of its arc.
-
-    Attributes
-    ----------
-    values : (m,) array
-        The parameter that varies: rotor speed [rad/s], or an entry of the machine file.
-    solutions : tuple of Solution
-        The m points.
-    instability : tuple of Instability or None
-        How each is unstable; None for a stable point, `Instability.FOLD` for a fold.
-    fold : (m,) boolean array
-        Whether each is a fold.
-    stop : Stop
-        Why the branch ends.
-    """
-
-    values: Array
-    solutions: tuple[Solution, ...]
-    instability: tuple[Instability | None, ...]
-    fold: NDArray[np.bool_]
-    stop: Stop
-
-    @property
-    def stable(self) -> NDArray[np.bool_]:
-        """Whether each point is stable, (m,); a fold, where stability changes, is not."""
-        return np.array([one is None for one in self.instability])
-
-    @property
-    def speed(self) -> Array:
-        """Rotor speeds [rad/s], (m,)."""
-        return np.array([solution.speed for solution in self.solutions])
-
-    def eccentricity(self, damper: str) -> Array:
-        """Greatest eccentricity of a damper's orbit, (m,)."""
-        return np.array([one.journals[damper].eccentricity_max for one in self.solutions])
-
-    @cached_property
-    def worst_eccentricity(self) -> Array:
-        """Greatest eccentricity of any damper, (m,)."""
-        return np.array([one.eccentricity_max for one in self.solutions])
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,65 +119,3 @@ def _follow(
         raise NoSolutionError(f"no solution at {rpm:g} rpm: {first.message}")
     branch = Branch(family, first.coefficients.ravel(), start, end, options=options)
     return judged(branch, progress)
-
-
-class _Judged(NamedTuple):
-    """A point of a branch, its response and how that is unstable."""
-
-    point: Point
-    solution: Solution
-    instability: Instability | None
-    fold: bool
-
-
-def judged(branch: Branch, progress: Progress | None = None) -> CurveBranch:
-    """Follow a branch to its end, with its folds and the stability of every point.
-
-    Where stability is lost or regained other than at a fold, the point of the change is put in.
-    """
-    points: list[_Judged] = []
-    for point, fold in with_folds(branch, _reported(branch, progress)):
-        one = _judge(branch.family, point, fold)
-        if points and not fold and not points[-1].fold:
-            change = _change(branch, points[-1], one)
-            points += [change] if change else []
-        points.append(one)
-    assert branch.stop is not None
-    return CurveBranch(
-        np.array([one.point.value for one in points]),
-        tuple(one.solution for one in points),
-        tuple(one.instability for one in points),
-        np.array([one.fold for one in points]),
-        branch.stop,
-    )
-
-
-def _judge(family: Family, point: Point, fold: bool) -> _Judged:
-    at = family.at(point.value)
-    solution = solution_at(at.balance, at.speed, point.x)
-    kind = Instability.FOLD if fold else stability(at.balance, solution).instability
-    return _Judged(point, solution, kind, fold)
-
-
-def _change(branch: Branch, before: _Judged, after: _Judged) -> _Judged | None:
-    """The point between two others at which a multiplier passes the unit circle."""
-    if (before.instability is None) == (after.instability is None):
-        return None
-
-    def growth(point: Point) -> float:
-        at = branch.family.at(point.value)
-        found = stability(at.balance, solution_at(at.balance, at.speed, point.x))
-        return found.growth
-
-    point = locate(branch, before.point, after.point, growth)
-    if point is None:
-        return None
-    kind = before.instability or after.instability
-    return _judge(branch.family, point, False)._replace(instability=kind)
-
-
-def _reported(branch: Branch, progress: Progress | None) -> Iterator[Point]:
-    for point in branch:
-        if progress is not None:
-            progress(point.value)
-        yield point

@@ -11,10 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm import HarmonicBalance, solve_equations
-from sfd_hbm_ros.hbm.continuation import Branch, ContinuationOptions, Stop
+from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.family import LoadFamily, SpeedFamily
 from sfd_hbm_ros.hbm.newton import newton
-from sfd_hbm_ros.response.curve import CurveBranch, ResponseCurve, judged
+from sfd_hbm_ros.hbm.options import ContinuationOptions
+from sfd_hbm_ros.hbm.points import Stop
+from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.judged import CurveBranch, judged
 from sfd_hbm_ros.response.jumps import solutions_at
 from sfd_hbm_ros.rotor import critical_speeds, hold_journals
 

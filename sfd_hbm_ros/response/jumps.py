@@ -12,11 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from sfd_hbm_ros.hbm import Solution, stability
-from sfd_hbm_ros.hbm.continuation import Stop
 from sfd_hbm_ros.hbm.family import Family
 from sfd_hbm_ros.hbm.newton import newton
+from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.hbm.solve import solution_at
-from sfd_hbm_ros.response.curve import CurveBranch, ResponseCurve
+from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.judged import CurveBranch
 
 _MOST_JUMPS = 20  # of one journey, so that a curve with an odd end cannot make it endless
 

@@ -6,7 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from sfd_hbm_ros.hbm import Instability
-from sfd_hbm_ros.response.curve import CurveBranch, ResponseCurve
+from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.judged import CurveBranch
 from sfd_hbm_ros.response.jumps import Direction, Jump, jumps
 
 

@@ -8,9 +8,11 @@ import pytest
 from scipy.optimize import fsolve
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
-from sfd_hbm_ros.hbm.continuation import Branch, ContinuationOptions, Stop
+from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.events import locate, with_folds
 from sfd_hbm_ros.hbm.family import LoadFamily, ParameterFamily, SpeedFamily
+from sfd_hbm_ros.hbm.options import ContinuationOptions
+from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.machine import override, override_all
 
 from .machines import PAPER, random_machine

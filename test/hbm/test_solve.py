@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, NewtonOptions, Outcome, solve
-from sfd_hbm_ros.hbm.newton import DEFAULTS, newton
+from sfd_hbm_ros.hbm.newton import newton
+from sfd_hbm_ros.hbm.options import DEFAULTS
 from sfd_hbm_ros.hbm.solve import first_guess, raise_load
 from sfd_hbm_ros.machine import MachineError, override
 

@@ -5,15 +5,12 @@ from functools import cache
 import numpy as np
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion, Outcome, Solution
-from sfd_hbm_ros.hbm.continuation import ContinuationOptions, Stop
 from sfd_hbm_ros.hbm.family import SpeedFamily
+from sfd_hbm_ros.hbm.options import ContinuationOptions
+from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.machine import override_all
-from sfd_hbm_ros.response.curve import (
-    CurveBranch,
-    ResponseCurve,
-    parameter_curve,
-    response_curve,
-)
+from sfd_hbm_ros.response.curve import ResponseCurve, parameter_curve, response_curve
+from sfd_hbm_ros.response.judged import CurveBranch
 
 from ..hbm.machines import PAPER
 

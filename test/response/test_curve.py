@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, Instability, solve
-from sfd_hbm_ros.hbm.continuation import Stop
+from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.machine import override_all
 from sfd_hbm_ros.response.curve import NoSolutionError, parameter_curve, response_curve
 from sfd_hbm_ros.response.detached import detached_branches

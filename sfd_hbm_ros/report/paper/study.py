@@ -11,7 +11,8 @@ from sfd_hbm_ros.hbm import JournalMotion, Solution, solve
 from sfd_hbm_ros.report.paper.cases import Numbers, Range
 from sfd_hbm_ros.report.paper.compute import Computed
 from sfd_hbm_ros.report.units import RPM
-from sfd_hbm_ros.response.curve import CurveBranch, ResponseCurve
+from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.judged import CurveBranch
 from sfd_hbm_ros.response.jumps import solutions_at
 from sfd_hbm_ros.response.summary import Summary
 
