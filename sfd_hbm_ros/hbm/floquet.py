@@ -28,6 +28,8 @@ REACH = 20.0
 
 _SETTLED = 1e-3  # relative change of the leading multiplier at which halving the step ends,
 _EXACT = 1e-7  # which must also leave no doubt on which side of 1 it lies
+_STIFF = 10.0  # norm of the Magnus series' second term beyond which the series is of no use
+_LOBATTO = np.array([[2.0, -4.0, 2.0], [2.0, 5.0, -1.0], [2.0, 8.0, 2.0]]) / 12.0
 _ROUNDING = 1e-6  # by which a multiplier of an undamped mode may exceed 1
 
 
@@ -113,12 +115,35 @@ def _monodromy(
     rates = _rates(balance, rotor, solution, 2 * steps)
     first, middle, last = rates[:-1:2], rates[1::2], rates[2::2]
     h = 2.0 * np.pi * solution.harmonics.revolutions / steps
-    exponents = h / 6.0 * (first + 4.0 * middle + last)
-    exponents -= h * h / 12.0 * (first @ last - last @ first)
+    commutators = h * h / 12.0 * (first @ last - last @ first)
+    if np.linalg.norm(commutators, axis=(1, 2)).max() > _STIFF:
+        parts = _lobatto_steps(h, np.stack([first, middle, last], axis=1))
+    else:
+        parts = expm(h / 6.0 * (first + 4.0 * middle + last) - commutators)
     monodromy = np.eye(rates.shape[1])
-    for step in expm(exponents):
+    for step in parts:
         monodromy = step @ monodromy
     return monodromy
+
+
+def _lobatto_steps(h: float, rates: Array) -> Array:
+    """Maps over steps of length h by Lobatto IIIC with three stages, (steps, 2m, 2m).
+
+    It is of fourth order too, and L-stable (Hairer and Wanner 1996, Solving ODEs II, IV.5).
+
+    Parameters
+    ----------
+    h : float
+        Length of a step [rad].
+    rates : (steps, 3, 2m, 2m) array
+        Matrices A at the beginning, the middle and the end of each.
+    """
+    steps, stages, size, _ = rates.shape
+    blocks = h * np.einsum("ij,sjkl->sikjl", _LOBATTO, rates)
+    matrix = np.eye(stages * size) - blocks.reshape(steps, stages * size, stages * size)
+    start = np.tile(np.eye(size), (steps, stages, 1))
+    maps: Array = np.linalg.solve(matrix, start)[:, -size:]
+    return maps
 
 
 def _rates(balance: HarmonicBalance, rotor: RotorModel, solution: Solution, samples: int) -> Array:

@@ -9,6 +9,7 @@ from sfd_hbm_ros.hbm import (
     Harmonics,
     Instability,
     Outcome,
+    floquet,
     solve,
     stability,
 )
@@ -136,3 +137,28 @@ def test_solution_that_did_not_converge_is_refused():
     solution = solve(balance, 400.0)
     with pytest.raises(ValueError, match="no solution at 400"):
         stability(balance, solution)
+
+
+@pytest.mark.parametrize("rpm", [4150.0, 4161.0, 4161.5])
+def test_stiff_film_in_the_fixed_frame(rpm, monkeypatch):
+    """Up to an eccentricity of 0.99 on a circle, whose multipliers the rotating frame gives."""
+    machine = override(PAPER, "unbalance.disk_2.magnitude", 5.039e-4)
+    w = rpm * np.pi / 30.0
+    *_, (balance, solution) = orbits(machine, w)
+    assert solution.eccentricity_max > 0.95
+    exponents = rotating_frame_exponents(balance, solution)
+    slow = np.exp(2.0 * np.pi / w * exponents[np.abs(exponents) < 3.0 * w])
+    monkeypatch.setattr(floquet, "is_axisymmetric", lambda rotor: False)
+    found = stability(balance, solution)
+    assert abs(found.multipliers[0]) == pytest.approx(np.abs(slow).max(), abs=2e-5)
+
+
+def test_overloaded_journal_is_judged():
+    """At an eccentricity beyond 0.995 as well, and without a false alarm at 0.966."""
+    load = [{"station": "disk_3", "force": [0.0, -8.0 * 137.45]}]
+    machine = override_all(PAPER, {"gravity": True, "loads": load})
+    balance = HarmonicBalance(machine, Harmonics(9))
+    for rpm in (1500.0, 2412.0):
+        solution = solve(balance, rpm * np.pi / 30.0)
+        assert solution.eccentricity_max > 0.96
+        assert stability(balance, solution).stable
