@@ -8,9 +8,8 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from sfd_hbm_ros.machine import Machine
+from sfd_hbm_ros.machine import Machine, override_all
 from sfd_hbm_ros.machine.errors import show_key, unknown
-from sfd_hbm_ros.node.prediction import overridden
 from sfd_hbm_ros.node.schema import SCHEMA, ParameterError, Spec, machine_schema
 
 _SECTIONS = ("dampers", "unbalance", "gravity")
@@ -66,7 +65,7 @@ class Parameters:
             for name, spec in specs.items()
             if name in self._given
         }
-        machine = overridden(machine, given)
+        machine = override_all(machine, given)
         for name, spec in specs.items():
             self._declare(spec, given.get(name, spec.default))
             self._machine[name] = spec

@@ -5,12 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion, Solution, solve
-from sfd_hbm_ros.machine import Load, Machine, override
+from sfd_hbm_ros.machine import Load, Machine
 
 AT_REST = "the rotor is at rest: there is nothing to predict"
 
@@ -135,19 +134,6 @@ class Model:
             )
             for damper in self.machine.dampers
         }
-
-
-def overridden(machine: Machine, values: Mapping[str, Any]) -> Machine:
-    """Return the machine with several entries changed by their dotted paths.
-
-    Raises
-    ------
-    MachineError
-        If there is no such entry, or the machine cannot be with such a value.
-    """
-    for path, value in values.items():
-        machine = override(machine, path, value)
-    return machine
 
 
 def _loaded(machine: Machine, loads: Mapping[str, Load]) -> Machine:

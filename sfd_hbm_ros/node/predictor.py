@@ -10,12 +10,12 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 
-from sfd_hbm_ros.machine import MachineError, read_machine
+from sfd_hbm_ros.machine import MachineError, override_all, read_machine
 from sfd_hbm_ros.node import diagnostics, guard
 from sfd_hbm_ros.node.inputs import Drops
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
-from sfd_hbm_ros.node.prediction import Model, overridden
+from sfd_hbm_ros.node.prediction import Model
 from sfd_hbm_ros.node.process import run
 from sfd_hbm_ros.node.reporter import Reporter
 from sfd_hbm_ros.node.schema import ParameterError
@@ -113,7 +113,7 @@ class Predictor(LifecycleNode):
             reason = "machine_file can only be changed while the node is unconfigured: clean it up"
             return SetParametersResult(successful=False, reason=reason)
         try:
-            overridden(model.machine, self._known.machine_values(parameters))
+            override_all(model.machine, self._known.machine_values(parameters))
         except MachineError as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
@@ -124,7 +124,7 @@ class Predictor(LifecycleNode):
         self._operation.update()
         model, values = self._operation.model, self._known.machine_values(parameters)
         if model is not None and (values or any(p.name == "harmonics" for p in parameters)):
-            model.change(overridden(model.machine, values), self._known["harmonics"])
+            model.change(override_all(model.machine, values), self._known["harmonics"])
             self._operation.predict_again()
 
     def caught(self, error: Exception) -> None:

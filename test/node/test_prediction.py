@@ -7,7 +7,7 @@ import pytest
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.machine import Load, Machine, MachineError, override, read_machine
-from sfd_hbm_ros.node.prediction import AT_REST, Model, overridden
+from sfd_hbm_ros.node.prediction import AT_REST, Model
 
 from .process import PAPER_ROTOR
 
@@ -74,12 +74,3 @@ def test_at_rest_there_is_nothing_to_predict():
     rest = Model(PAPER, 3).predict(0.0)
     assert (rest.failed, rest.message) == (False, AT_REST)
     assert np.isnan(rest.journals["damper_1"].eccentricity_max)
-
-
-def test_values_are_overridden_together_or_not_at_all():
-    good = {"dampers.damper_1.viscosity": 0.01, "gravity": True}
-    machine = overridden(PAPER, good)
-    assert (machine.dampers[0].viscosity, machine.gravity) == (0.01, True)
-    with pytest.raises(MachineError, match=r"unbalance\.disk_2\.magnitude"):
-        overridden(PAPER, good | {"unbalance.disk_2.magnitude": -1.0})
-    assert read_machine(PAPER_ROTOR) == PAPER
