@@ -94,7 +94,7 @@ def p6(study: Study, claim: Claim) -> dict[str, Judgement]:
     ]
     return {
         "shape": judged(
-            falling(flatness) and flatness[0] > 0.9,
+            falling(flatness) and flatness[0] > claim.numbers["circle"],
             f"least over greatest width {listed(flatness)}",
         ),
         "shrinks": judged(falling(sizes), f"greatest half-width {listed(sizes)} of clearance"),
@@ -110,11 +110,12 @@ def p7(study: Study, claim: Claim) -> dict[str, Judgement]:
     spectra = np.array([harmonics(motion) for motion in _motions(study, claim)])
     first = spectra[:, 1, 0].tolist()
     relative = spectra[:, 2:4].max(axis=2) / spectra[:, 1].max(axis=1)[:, np.newaxis]
-    shown = relative > study.agreement["visible"]
+    most = relative[1:].max(axis=0)
+    appear = (most > study.agreement["visible"]) & (most > relative[0])
     return {
         "first": judged(falling(first), f"{listed(first, '.4f')} of clearance"),
         "others": judged(
-            bool(shown[1:].any(axis=0).all() and not shown[0].any()),
+            bool(appear.all()),
             f"2x {listed(relative[:, 0])} and 3x {listed(relative[:, 1])} of 1x",
         ),
     }

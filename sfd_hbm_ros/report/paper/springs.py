@@ -70,7 +70,10 @@ def p10(study: Study, claim: Claim) -> dict[str, Judgement]:
     x, y = 0.5 * np.ptp(motion.orbit(), axis=0) / motion.clearance
     highest = solution.eccentricity_max
     return {
-        "flat": judged(bool(x > 1.5 * y), f"half-widths {x:.3f} in x, {y:.3f} in y of clearance"),
+        "flat": judged(
+            bool(x > claim.numbers["flat"] * y),
+            f"half-widths {x:.3f} in x, {y:.3f} in y of clearance",
+        ),
         "eccentric": judged(highest > claim.numbers["high"], f"eccentricity up to {highest:.3f}"),
     }
 

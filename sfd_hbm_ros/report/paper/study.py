@@ -94,7 +94,7 @@ class Study:
     def start_up(self, name: str, rpm: float) -> Solution:
         """Response at a speed that a run-up meets: the first along the arc."""
         curve = self.curve(name)
-        _, solution = next(solutions_at(curve.family, curve.branches[0], rpm * RPM))
+        _, solution = next(solutions_at(curve.branches[0], rpm * RPM))
         return solution
 
     def amplitudes(

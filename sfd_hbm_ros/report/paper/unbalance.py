@@ -12,18 +12,20 @@ from sfd_hbm_ros.report.units import RPM
 
 def p1(study: Study, claim: Claim) -> dict[str, Judgement]:
     """Three unbalances too small for a jump."""
-    same = study.agreement["same"]
+    agreement = study.agreement
     peaks = study.peaks(claim.curves)
     speeds = [peak.rpm for peak in peaks]
     heights = [peak.amplitude for peak in peaks]
     widths = [width_of_hysteresis(study, name) for name in claim.curves]
     ours = f"hysteresis of {listed(widths, '.1f', 'rpm')} on disks 1, 2, 3"
     no_jump = judged(not any(widths), ours)
-    if 0.0 < max(widths) <= study.agreement["threshold_rpm"]:
+    if 0.0 < max(widths) <= agreement["threshold_rpm"]:
         no_jump = undecided(
             ours, "the rotor is at the threshold of jumping, nearer than it could be reconstructed"
         )
-    alike = np.ptp(speeds) <= same * max(speeds) and np.ptp(heights) <= 0.1 * max(heights)
+    alike = np.ptp(speeds) <= agreement["same"] * max(speeds) and np.ptp(heights) <= agreement[
+        "similar"
+    ] * max(heights)
     return {
         "no_jump": no_jump,
         "alike": judged(
