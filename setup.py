@@ -21,7 +21,7 @@ setup(
         files("launch", "*.launch.*"),
     ],
     python_requires=">=3.11",
-    install_requires=["numpy", "scipy", "pyyaml", "matplotlib"],
+    install_requires=["numba", "numpy", "scipy", "pyyaml", "matplotlib"],
     extras_require={"test": ["pytest"]},
     zip_safe=True,
     maintainer="sfd_hbm_ros maintainers",

@@ -16,7 +16,8 @@ import yaml
 
 ROOT = Path(__file__).parents[1]
 MANIFEST = ET.parse(ROOT / "package.xml").getroot()
-ROSDEP_KEYS = {name: f"python3-{name}" for name in ("matplotlib", "numpy", "scipy", "yaml")}
+KEYED = ("matplotlib", "numba", "numpy", "scipy", "yaml")
+ROSDEP_KEYS = {name: f"python3-{name}" for name in KEYED}
 ROS_MODULE = re.compile(r"rclpy|rcl_interfaces|ament_index_python|launch\w*|\w+_(msgs|srvs)")
 
 

@@ -10,42 +10,128 @@ degree 3: it has two zeros as long as the direction of W turns slower than theta
 otherwise.
 """
 
-from typing import NamedTuple
+import cmath
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sfd_hbm_ros.kernels import kernel, part
+
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+#: Most arcs that a state can have (neighbouring arcs may touch).
+MOST_ARCS = 6
+
 _TURN_LIMIT = 0.95  # of the rate of theta: below 1 there are two zeros, nearer 1 Newton is slow
 _VANISHING = 1e-12  # of |v|^2: a W below it may be a rounded zero, where it turns at once
-_ITERATIONS = 6
+_ITERATIONS = 8
 _LAST_STEP = 1e-6  # of Newton's method [rad]: the zero is then good to about its square
 
 
-class Arcs(NamedTuple):
-    """Arcs of the circumference and the states that they belong to.
+@part
+def _thickness_squared(eps: float, cosine: float) -> float:
+    return (1.0 - eps * cosine) ** 2
 
-    Attributes
-    ----------
-    ends : (2, m) array
-        Start and end of each arc, as angles from the line of centres [rad].
-    state : (m,) integer array
-        Index of the arc's state.
+
+@part
+def _single_arc(eps: float, v: complex, a: complex) -> tuple[bool, float, float]:
+    """Whether there is one arc for certain, and its ends."""
+    if v == 0.0 and a == 0.0:
+        v = 1.0 + 0.0j  # at rest any arc gives no force
+    if a == 0.0:
+        middle = math.atan2(v.imag, v.real)
+        return True, middle - 0.5 * math.pi, middle + 0.5 * math.pi
+    cross = v.real * a.imag - v.imag * a.real
+    nearest = -(v.real * a.real + v.imag * a.imag) / _square(a)
+    nearest = min(max(nearest, _thickness_squared(eps, 1.0)), _thickness_squared(eps, -1.0))
+    slowest = _square(v + nearest * a)
+    if _steepest_thickness(eps) * abs(cross) >= _TURN_LIMIT * slowest:
+        return False, math.nan, math.nan
+    if slowest <= _VANISHING * _square(v):
+        return False, math.nan, math.nan
+    start, end = _zero(eps, v, a, -1.0), _zero(eps, v, a, 1.0)
+    if end < start:  # both are known modulo a turn: the end is the first after the start
+        end += 2.0 * math.pi
+    return math.isfinite(start) and math.isfinite(end), start, end
+
+
+@part
+def _square(z: complex) -> float:
+    return z.real * z.real + z.imag * z.imag
+
+
+@part
+def _steepest_thickness(eps: float) -> float:
+    """Greatest derivative of (1 - eps cos(theta))^2 by theta."""
+    cosine = -2.0 * eps / (1.0 + math.sqrt(1.0 + 8.0 * eps**2))
+    return 2.0 * eps * (1.0 - eps * cosine) * math.sqrt(1.0 - cosine**2)
+
+
+@part
+def _zero(eps: float, v: complex, a: complex, side: float) -> float:
+    """Zero of g a quarter turn before (-1) or after (+1) W, or nan if none was found.
+
+    Newton's method turns the unit vector (x, y) at the angle theta by a rational rotation: by the
+    angle between it and the direction sought, over 1 - d(arg W)/d(theta).
     """
+    w = v + a  # at a thickness of 1
+    if w == 0.0:
+        w = v
+    cross = v.real * a.imag - v.imag * a.real
+    size = math.sqrt(_square(w))
+    x, y = -side * w.imag / size, side * w.real / size
+    for _ in range(_ITERATIONS):
+        h = 1.0 - eps * x
+        w = v + h * h * a
+        square = _square(w)
+        normal, tangential = side * (w.real * x + w.imag * y), side * (w.real * y - w.imag * x)
+        turn = 2.0 * eps * h * y * cross / square
+        tangent = normal / ((math.sqrt(square) + tangential) * (1.0 - turn))  # of half the angle
+        cosine = (1.0 - tangent * tangent) / (1.0 + tangent * tangent)
+        sine = 2.0 * tangent / (1.0 + tangent * tangent)
+        x, y = x * cosine - y * sine, y * cosine + x * sine
+        if 2.0 * abs(tangent) < _LAST_STEP:
+            return math.atan2(y, x)
+    return math.nan
 
-    ends: Array
-    state: NDArray[np.intp]
+
+@part
+def _several_arcs(eps: float, v: complex, a: complex, ends: Array) -> int:
+    """Every interval between neighbouring zeros on which the pressure is positive.
+
+    The zeros are the angles of all six roots of the polynomial in exp(i theta). Roots off the
+    unit circle only divide an interval, so that no root has to be judged real or not.
+    """
+    c3 = eps**2 / 8.0 * a.conjugate()
+    if c3 == 0.0:  # a journal at the centre whose velocity and acceleration cancel
+        return 0
+    c2 = -0.5 * eps * a.conjugate()
+    c1 = 0.5 * (v.conjugate() + (1.0 + 0.5 * eps**2) * a.conjugate() + 0.25 * eps**2 * a)
+    c0 = complex(-eps * a.real, 0.0)
+    lower = (c2, c1, c0, c1.conjugate(), c2.conjugate(), c3.conjugate())
+    companion = np.zeros((MOST_ARCS, MOST_ARCS), dtype=np.complex128)
+    for i in range(MOST_ARCS):
+        companion[0, i] = -lower[i] / c3
+        if i > 0:
+            companion[i, i - 1] = 1.0
+    zeros = np.sort(np.angle(np.linalg.eigvals(companion)))
+    count = 0
+    for i in range(MOST_ARCS):
+        start = zeros[i]
+        end = zeros[i + 1] if i + 1 < MOST_ARCS else zeros[0] + 2.0 * math.pi
+        middle = 0.5 * (start + end)
+        w = v + _thickness_squared(eps, math.cos(middle)) * a
+        if (w.conjugate() * cmath.exp(1j * middle)).real > 0.0:
+            ends[count, 0], ends[count, 1] = start, end
+            count += 1
+    return count
 
 
-def full_circle(n: int) -> Arcs:
-    """One arc of the whole circumference for each of n states."""
-    return Arcs(np.stack([np.zeros(n), np.full(n, 2.0 * np.pi)]), np.arange(n))
-
-
-def positive_arcs(eps: Array, v: ComplexArray, a: ComplexArray) -> Arcs:
-    """Arcs of positive pressure.
+@kernel("int64[::1](float64[::1], complex128[::1], complex128[::1], float64[:, :, ::1])")
+def positive_arcs(eps: Array, v: ComplexArray, a: ComplexArray, ends: Array) -> NDArray[np.int64]:
+    """Arcs of positive pressure of n states.
 
     Parameters
     ----------
@@ -54,80 +140,17 @@ def positive_arcs(eps: Array, v: ComplexArray, a: ComplexArray) -> Arcs:
     v, a : (n,) complex arrays
         Velocity and scaled acceleration a rho c^2/(12 mu), both [m/s], in the frame of the
         line of centres, as x + i y.
+    ends : (n, MOST_ARCS, 2) array
+        Gets start and end of each state's arcs, as angles from the line of centres [rad].
 
     Returns
     -------
-    The arcs, none or up to five for a state (neighbouring arcs may touch).
+    (n,) integer array
+        Number of each state's arcs, which may be none.
     """
-    v = np.where((v == 0) & (a == 0), 1.0, v)  # at rest any arc gives no force
-    ends, single = _single_arc(eps, v, a)
-    if single.all():
-        return Arcs(ends, np.arange(len(eps)))
-    rest = np.flatnonzero(~single)
-    more = _several_arcs(eps[rest], v[rest], a[rest])
-    first = np.flatnonzero(single)
-    return Arcs(np.hstack([ends[:, first], more.ends]), np.concatenate([first, rest[more.state]]))
-
-
-def _direction(eps: Array, v: ComplexArray, a: ComplexArray, theta: Array) -> ComplexArray:
-    w: ComplexArray = v + (1.0 - eps * np.cos(theta)) ** 2 * a
-    return w
-
-
-def _single_arc(eps: Array, v: ComplexArray, a: ComplexArray) -> tuple[Array, NDArray[np.bool_]]:
-    """The ends (2, n) of the only arc, and for which states that is proven and converged."""
-    side = np.array([[-1.0], [1.0]])
-    theta = np.arctan2(v.imag, v.real) + 0.5 * np.pi * side
-    if not a.any():
-        return theta, np.ones(len(eps), dtype=bool)
-    cross = v.real * a.imag - v.imag * a.real
-    dot = v.real * a.real + v.imag * a.imag
-    with np.errstate(all="ignore"):  # states that fail here are told apart by `single`
-        nearest = np.clip(-dot / np.abs(a) ** 2, (1.0 - eps) ** 2, (1.0 + eps) ** 2)
-        slowest = np.abs(v + np.where(a == 0, 0.0, nearest) * a) ** 2
-        single = _steepest_thickness(eps) * np.abs(cross) < _TURN_LIMIT * slowest
-        single &= slowest > _VANISHING * np.abs(v) ** 2
-        for _ in range(_ITERATIONS):
-            cosine, sine = np.cos(theta), np.sin(theta)
-            h = 1.0 - eps * cosine
-            wx, wy = v.real + h * h * a.real, v.imag + h * h * a.imag
-            normal, tangential = wx * cosine + wy * sine, wy * cosine - wx * sine
-            off = np.arctan2(side * normal, -side * tangential)
-            turn = 2.0 * eps * h * sine * cross / (wx * wx + wy * wy)
-            theta = theta + off / (1.0 - turn)
-            last = np.abs(off).max(axis=0)
-            if np.all(last[single] < _LAST_STEP):
-                break
-        single &= last < _LAST_STEP
-    # both ends are known modulo a turn: the end is the first after the start
-    theta[1] = theta[0] + np.mod(theta[1] - theta[0], 2.0 * np.pi)
-    return theta, single
-
-
-def _steepest_thickness(eps: Array) -> Array:
-    """Greatest derivative of (1 - eps cos(theta))^2 by theta."""
-    cosine = -2.0 * eps / (1.0 + np.sqrt(1.0 + 8.0 * eps**2))
-    steepest: Array = 2.0 * eps * (1.0 - eps * cosine) * np.sqrt(1.0 - cosine**2)
-    return steepest
-
-
-def _several_arcs(eps: Array, v: ComplexArray, a: ComplexArray) -> Arcs:
-    """Every interval between neighbouring zeros, closed where the pressure is not positive.
-
-    The zeros are the angles of all six roots of the polynomial in exp(i theta). Roots off the
-    unit circle only divide an interval, so that no root has to be judged real or not.
-    """
-    c3 = eps**2 / 8.0 * a.conj()
-    c2 = -0.5 * eps * a.conj()
-    c1 = 0.5 * (v.conj() + (1.0 + 0.5 * eps**2) * a.conj() + 0.25 * eps**2 * a)
-    c0 = -eps * a.real + 0j
-    lower = np.stack([c2, c1, c0, c1.conj(), c2.conj(), c3.conj()], axis=-1)
-    companion = np.zeros((len(eps), 6, 6), dtype=complex)
-    companion[:, 0, :] = -lower / c3[:, None]
-    companion[:, np.arange(1, 6), np.arange(5)] = 1.0
-    start = np.sort(np.angle(np.linalg.eigvals(companion)), axis=-1)
-    end = np.hstack([start[:, 1:], start[:, :1] + 2.0 * np.pi])
-    middle = 0.5 * (start + end)
-    w = _direction(eps[:, None], v[:, None], a[:, None], middle)
-    positive = (w.conj() * np.exp(1j * middle)).real > 0
-    return Arcs(np.stack([start[positive], end[positive]]), np.nonzero(positive)[0])
+    counts = np.ones(len(eps), dtype=np.int64)
+    for i in range(len(eps)):
+        single, ends[i, 0, 0], ends[i, 0, 1] = _single_arc(eps[i], v[i], a[i])
+        if not single:
+            counts[i] = _several_arcs(eps[i], v[i], a[i], ends[i])
+    return counts

@@ -14,10 +14,12 @@ Fourier series of 1/eta^p, geometric in beta = eps/(1 + sqrt(1 - eps^2)), sums t
 Both forms hold for every 0 <= eps < 1 without a division by eps.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.film.arcs import Arcs
+from sfd_hbm_ros.kernels import kernel, part
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -25,126 +27,192 @@ ComplexArray = NDArray[np.complex128]
 _SMALL = 0.35  # below this beta the logarithm's tail cancels and is integrated instead
 _nodes, _weights = np.polynomial.legendre.leggauss(9)
 _NODES = 0.5 * (_nodes + 1.0)
-_TAIL_WEIGHTS = 0.5 * _weights * _NODES**2
+_WEIGHTS = 0.5 * _weights
+_TAIL_WEIGHTS = _WEIGHTS * _NODES**2
+_SHORT = 0.5  # half-length [rad] up to which the nodes resolve exp(3i theta) to rounding
+_FAR = 4.0  # half-lengths from the pole of 1/eta at which the nodes resolve an arc to rounding
+_FUNCTIONS = 14
 
 
-class ArcIntegrals:
+@part
+def _functions(values: ComplexArray, theta: float, beta: float) -> None:
+    """Set the functions of which every antiderivative is a combination, at one end of an arc.
+
+    The factors of the combination depend on eps alone.
+    """
+    w = complex(math.cos(theta), math.sin(theta))
+    u = beta * w
+    l3 = _log_tail(u, beta)
+    l2 = 0.5 + u * l3
+    l1 = 1.0 + u * l2
+    log = u * l1  # -log(1 - u)
+    pole = _inverse(1.0 - u)
+    zeta = (w - beta) * pole  # exp(i gamma)
+    w2, zeta2 = w * w, zeta * zeta
+    values[0] = theta
+    values[1] = theta + 2.0 * log.imag  # gamma
+    values[2] = -1j * zeta
+    values[3] = -0.5j * zeta2
+    values[4] = -1j / 3.0 * (zeta * zeta2)
+    values[5] = log.conjugate()
+    values[6] = w * l1
+    values[7] = w2 * l2
+    values[8] = w * w2 * l3
+    values[9] = pole
+    values[10] = w * pole
+    values[11] = w * w2 * pole
+    values[12] = w
+    values[13] = w2
+
+
+@part
+def _log_tail(u: complex, beta: float) -> complex:
+    """(-log(1 - u) - u - u^2/2)/u^3, the sum of u^n/(n + 3), for |u| = beta."""
+    if beta >= _SMALL:
+        inverse, gap = _inverse(u), 1.0 - u
+        square = gap.real * gap.real + gap.imag * gap.imag
+        log = complex(0.5 * math.log(square), math.atan2(gap.imag, gap.real))
+        return ((-log * inverse - 1.0) * inverse - 0.5) * inverse
+    tail = 0.0j
+    for k in range(len(_NODES)):
+        tail += _TAIL_WEIGHTS[k] * _inverse(1.0 - _NODES[k] * u)
+    return tail
+
+
+@part
+def _inverse(z: complex) -> complex:
+    """1/z by one real division, where neither overflow nor underflow can happen."""
+    scale = 1.0 / (z.real * z.real + z.imag * z.imag)
+    return complex(z.real * scale, -z.imag * scale)
+
+
+@part
+def _add_force(j: ComplexArray, total: ComplexArray, eps: float, s: float, beta: float) -> None:
+    """J(3, 0), J(3, 2), J(1, 0) and J(1, 2)."""
+    theta, gamma, log_conj = total[0].real, total[1].real, total[5]
+    a, b, s5, beta2 = 0.5 * (1.0 + s), 0.5 * (1.0 - s), s**5, beta * beta
+    half, quarter = 0.5 * eps**2, 0.25 * eps**2
+    j[0] += _polynomial(total, (1.0 + half, eps, quarter), (eps, quarter)) / s5
+    j[1] += _polynomial(total, (3.0 * half, 2.0 * eps * a, a * a), (2.0 * eps * b, b * b)) / s5
+    j[2] += gamma / s
+    j[3] += (beta2 * theta - 1j * (beta * total[12] + total[7] - beta2 * log_conj)) / s
+
+
+@part
+def _add_gradient(j: ComplexArray, total: ComplexArray, eps: float, s: float, beta: float) -> None:
+    """J(4, 1), J(4, 3), J(2, 1) and J(2, 3)."""
+    theta, log_conj, pole_conj = total[0].real, total[5], total[9].conjugate()
+    a, b, q = 0.5 * (1.0 + s), 0.5 * (1.0 - s), 0.25 * eps**2
+    inner, outer = 1.0 + 2.0 * q, eps * q
+    s3, s7 = s**3, s**7
+    j[4] += (
+        _polynomial(
+            total,
+            (eps * (2.0 + 2.0 * q), 4.0 * q + a * inner + b * q, outer + a * eps, a * q),
+            (4.0 * q + b * inner + a * q, outer + b * eps, b * q),
+        )
+        / s7
+    )
+    j[5] += (
+        _polynomial(
+            total,
+            (10.0 * q * eps, 15.0 * a * q, 3.0 * a * a * eps, a**3),
+            (15.0 * b * q, 3.0 * b * b * eps, b**3),
+        )
+        / s7
+    )
+    j21 = (1.0 - s) * total[6] + s * total[10]
+    j21 -= beta * ((1.0 + s) * log_conj + s * pole_conj)
+    j23 = (1.0 + 2.0 * s) * beta**2 * total[12] + 0.5 * (1.0 + s) * beta * total[13]
+    j23 += (1.0 - 3.0 * s) * total[8] + s * total[11]
+    j23 -= beta**3 * ((1.0 + 3.0 * s) * log_conj + s * pole_conj)
+    j[6] += (eps * theta - 1j * j21) / s3
+    j[7] += ((1.0 + 3.0 * s) * beta**3 * theta - 1j * j23) / s3
+
+
+@part
+def _polynomial(
+    total: ComplexArray, ahead: tuple[float, ...], behind: tuple[float, ...]
+) -> complex:
+    """Integral over gamma of sum c[m] exp(i m gamma), c[0], c[1], ... and c[-1], c[-2], ..."""
+    value: complex = ahead[0] * total[1]
+    for m in range(len(behind)):
+        power = total[2 + m]
+        value += ahead[m + 1] * power + behind[m] * power.conjugate()
+    return value
+
+
+@part
+def _is_short(start: float, end: float, beta: float) -> bool:
+    """Whether an arc is short beside its distance from the pole, which is at i log(beta).
+
+    Its integrals are then small differences of large antiderivatives.
+    """
+    half = 0.5 * (end - start)
+    if half > _SHORT or beta == 0.0:
+        return False
+    middle = 0.5 * (start + end)
+    middle -= 2.0 * math.pi * math.floor(middle / (2.0 * math.pi) + 0.5)
+    return math.hypot(middle, math.log(beta)) > _FAR * half
+
+
+@part
+def _add_short(j: ComplexArray, start: float, end: float, eps: float) -> None:
+    """Add all J(p, m) of a short arc, by Gauss-Legendre quadrature."""
+    for k in range(len(_NODES)):
+        theta = start + (end - start) * _NODES[k]
+        e = complex(math.cos(theta), math.sin(theta))
+        first = 1.0 / (1.0 - eps * e.real)
+        weight = (end - start) * _WEIGHTS[k] * first
+        e2, third = e * e, weight * first * first
+        j[0] += third
+        j[1] += third * e2
+        j[2] += weight
+        j[3] += weight * e2
+        j[4] += third * first * e
+        j[5] += third * first * e2 * e
+        j[6] += weight * first * e
+        j[7] += weight * first * e2 * e
+
+
+@kernel("complex128[:, ::1](float64[::1], float64[:, :, ::1], int64[::1])")
+def arc_integrals(eccentricity: Array, ends: Array, counts: NDArray[np.int64]) -> ComplexArray:
     """J(p, m) of n states, each summed over the state's arcs.
 
     Parameters
     ----------
     eccentricity : (n,) array
         Eccentricities eps, 0 <= eps < 1.
-    arcs : Arcs
-        The arcs of each state.
+    ends : (n, arcs, 2) array
+        Start and end of each state's arcs, as angles from the line of centres [rad].
+    counts : (n,) integer array
+        Number of each state's arcs.
+
+    Returns
+    -------
+    (n, 8) complex array
+        J(3, 0), J(3, 2), J(1, 0), J(1, 2), J(4, 1), J(4, 3), J(2, 1), J(2, 3).
     """
-
-    def __init__(self, eccentricity: Array, arcs: Arcs) -> None:
-        self._eps = eps = eccentricity
-        self._s = np.sqrt((1.0 - eps) * (1.0 + eps))
-        self._beta = eps / (1.0 + self._s)
-        beta = self._beta[arcs.state]
-        w = np.cos(arcs.ends) + 1j * np.sin(arcs.ends)
-        u = beta * w
-        l3 = _log_tail(u, beta)
-        l2 = 0.5 + u * l3
-        l1 = 1.0 + u * l2
-        log = u * l1  # -log(1 - u)
-        pole = 1.0 / (1.0 - u)
-        zeta = (w - beta) * pole  # exp(i gamma)
-        w2, zeta2 = w * w, zeta * zeta
-        # every antiderivative is a combination of these, with factors that depend on eps alone
-        functions = np.stack(
-            [
-                arcs.ends + 0j,
-                arcs.ends + 2.0 * log.imag + 0j,  # gamma
-                zeta / 1j,
-                zeta2 / 2j,
-                zeta * zeta2 / 3j,
-                log.conj(),
-                w * l1,
-                w2 * l2,
-                w * w2 * l3,
-                pole,
-                w * pole,
-                w * w2 * pole,
-                w,
-                w2,
-            ]
-        )
-        over_arcs = functions[:, 1] - functions[:, 0]
-        if len(arcs.state) != len(eps) or np.any(arcs.state[1:] <= arcs.state[:-1]):
-            of_arcs, over_arcs = over_arcs, np.zeros((len(functions), len(eps)), dtype=complex)
-            for total, part in zip(over_arcs, of_arcs, strict=True):
-                np.add.at(total, arcs.state, part)
-        self._theta, self._gamma = over_arcs[0].real, over_arcs[1].real
-        self._zeta = over_arcs[2:5]
-        self._log_conj, self._wl1, self._w2l2, self._w3l3 = over_arcs[5:9]
-        self._pole, self._w_pole, self._w3_pole, self._w, self._w2 = over_arcs[9:]
-
-    def of_force(self) -> tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray]:
-        """J(3, 0), J(3, 2), J(1, 0) and J(1, 2), each (n,)."""
-        eps, s, beta2 = self._eps, self._s, self._beta**2
-        a, b, s5 = 0.5 * (1.0 + s), 0.5 * (1.0 - s), s**-5
-        half, quarter = 0.5 * eps**2, 0.25 * eps**2
-        j30 = s5 * self._polynomial(quarter, eps, 1.0 + half, eps, quarter)
-        j32 = s5 * self._polynomial(b * b, 2 * eps * b, 3 * half, 2 * eps * a, a * a)
-        j12 = beta2 * self._theta - 1j * (
-            self._beta * self._w + self._w2l2 - beta2 * self._log_conj
-        )
-        return j30, j32, self._gamma / s + 0j, j12 / s
-
-    def of_gradient(self) -> tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray]:
-        """J(4, 1), J(4, 3), J(2, 1) and J(2, 3), each (n,)."""
-        eps, s, beta = self._eps, self._s, self._beta
-        a, b, q = 0.5 * (1.0 + s), 0.5 * (1.0 - s), 0.25 * eps**2
-        s3, s7 = s**-3, s**-7
-        inner, outer = 1.0 + 2.0 * q, eps * q
-        j41 = self._polynomial(
-            b * q,
-            outer + b * eps,
-            4.0 * q + b * inner + a * q,
-            eps * (2.0 + 2.0 * q),
-            4.0 * q + a * inner + b * q,
-            outer + a * eps,
-            a * q,
-        )
-        j43 = self._polynomial(
-            b**3, 3 * b * b * eps, 15 * b * q, 10 * q * eps, 15 * a * q, 3 * a * a * eps, a**3
-        )
-        pole_conj = self._pole.conj()
-        j21 = eps * self._theta - 1j * (
-            (1.0 - s) * self._wl1
-            + s * self._w_pole
-            - beta * ((1.0 + s) * self._log_conj + s * pole_conj)
-        )
-        j23 = (1.0 + 3.0 * s) * beta**3 * self._theta - 1j * (
-            (1.0 + 2.0 * s) * beta**2 * self._w
-            + 0.5 * (1.0 + s) * beta * self._w2
-            + (1.0 - 3.0 * s) * self._w3l3
-            + s * self._w3_pole
-            - beta**3 * ((1.0 + 3.0 * s) * self._log_conj + s * pole_conj)
-        )
-        return s7 * j41, s7 * j43, s3 * j21, s3 * j23
-
-    def _polynomial(self, *c: Array) -> ComplexArray:
-        """Integral over gamma of sum c[m] exp(i m gamma), m = -k..k."""
-        k = len(c) // 2
-        total: ComplexArray = c[k] * self._gamma + 0j
-        for m in range(1, k + 1):
-            power = self._zeta[m - 1]
-            total += c[k + m] * power + c[k - m] * power.conj()
-        return total
-
-
-def _log_tail(u: ComplexArray, beta: Array) -> ComplexArray:
-    """(-log(1 - u) - u - u^2/2)/u^3, the sum of u^n/(n + 3), for |u| = beta."""
-    small = beta < _SMALL
-    safe = np.where(small, 0.5, u)
-    gap = 1.0 - safe
-    log = 0.5 * np.log(gap.real**2 + gap.imag**2) + 1j * np.arctan2(gap.imag, gap.real)
-    inverse = 1.0 / safe
-    tail: ComplexArray = ((-log * inverse - 1.0) * inverse - 0.5) * inverse
-    if small.any():
-        tail[:, small] = (1.0 / (1.0 - u[:, small, None] * _NODES)) @ _TAIL_WEIGHTS
-    return tail
+    result = np.empty((len(eccentricity), 8), dtype=np.complex128)
+    start = np.empty(_FUNCTIONS, dtype=np.complex128)
+    end, total = np.empty_like(start), np.empty_like(start)
+    for i in range(len(eccentricity)):
+        eps = eccentricity[i]
+        s = math.sqrt((1.0 - eps) * (1.0 + eps))
+        beta = eps / (1.0 + s)
+        total[:] = 0.0
+        closed = False
+        result[i] = 0.0
+        for arc in range(counts[i]):
+            if _is_short(ends[i, arc, 0], ends[i, arc, 1], beta):
+                _add_short(result[i], ends[i, arc, 0], ends[i, arc, 1], eps)
+                continue
+            _functions(start, ends[i, arc, 0], beta)
+            _functions(end, ends[i, arc, 1], beta)
+            for k in range(_FUNCTIONS):
+                total[k] += end[k] - start[k]
+            closed = True
+        if closed:
+            _add_force(result[i], total, eps, s, beta)
+            _add_gradient(result[i], total, eps, s, beta)
+    return result

@@ -9,25 +9,16 @@ is positive are the integrals of `integrals`.
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.film.arcs import Arcs, full_circle, positive_arcs
-from sfd_hbm_ros.film.integrals import ArcIntegrals
+from sfd_hbm_ros.film.arcs import MOST_ARCS, positive_arcs
+from sfd_hbm_ros.film.frame import forces_of_integrals, seen_from_centres
+from sfd_hbm_ros.film.integrals import arc_integrals
 from sfd_hbm_ros.film.protocol import Array, FilmForces
 
 ComplexArray = NDArray[np.complex128]
-
-
-class _State(NamedTuple):
-    """Eccentricity, and the motion seen from the line of centres, whose direction is `line`."""
-
-    eps: Array
-    line: ComplexArray
-    v: ComplexArray
-    a: ComplexArray
 
 
 @dataclass(frozen=True)
@@ -81,9 +72,7 @@ class ShortFilm:
 
     def force(self, position: Array, velocity: Array, acceleration: Array) -> Array:
         """Force on the journal [N], (n, 2); see `FilmModel.force`."""
-        state = self._state(position, velocity, acceleration)
-        integrals = ArcIntegrals(state.eps, self._arcs(state))
-        return _as_xy(self._complex_force(state, *integrals.of_force()))
+        return self.linearise(position, velocity, acceleration).force
 
     def linearise(self, position: Array, velocity: Array, acceleration: Array) -> FilmForces:
         """Force and its exact derivatives; see `FilmModel.linearise`.
@@ -91,69 +80,29 @@ class ShortFilm:
         The zeros of the pressure move with the state, but the pressure vanishes there, so that
         the arcs can be held fixed in every derivative.
         """
-        state = self._state(position, velocity, acceleration)
-        integrals = ArcIntegrals(state.eps, self._arcs(state))
-        j30, j32, j10, j12 = integrals.of_force()
-        j41, j43, j21, j23 = integrals.of_gradient()
-        c, mu, rho = self.clearance, self._viscous, self._inertial
-        _, line, v, a = state
-        by_conj = 0.75 * mu / c**4 * (v * j41 + v.conj() * j43)
-        by_conj += 0.25 * rho / c**2 * (a * j21 + a.conj() * j23)
-        by_z = 0.75 * mu / c**4 * (v * j41.conj() + v.conj() * j41)
-        by_z += 0.25 * rho / c**2 * (a * j21.conj() + a.conj() * j21)
-        turned = line * line
-        return FilmForces(
-            _as_xy(self._complex_force(state, j30, j32, j10, j12)),
-            _as_matrix(-by_z, -by_conj * turned),
-            _as_matrix(-0.5 * mu / c**3 * j30, -0.5 * mu / c**3 * j32 * turned),
-            _as_matrix(-0.5 * rho / c * j10, -0.5 * rho / c * j12 * turned),
+        x, x1, x2 = (
+            np.array(part, dtype=float, order="C") for part in (position, velocity, acceleration)
         )
-
-    def _state(self, position: Array, velocity: Array, acceleration: Array) -> _State:
-        z = _as_complex(position)
-        distance = np.abs(z)
+        distance = np.empty(len(x))
+        line, v, a = seen_from_centres(x, x1, x2, distance)
         eps = distance / self.clearance
-        if not np.all(eps < 1.0):
+        if not (eps < 1.0).all():
             raise ValueError(
                 f"eccentricity {np.max(eps):.6g} is not inside the clearance, it must be below 1"
             )
-        centred = distance == 0  # any direction will do
-        line = np.where(centred, 1.0, z / np.where(centred, 1.0, distance)) + 0j
-        back = line.conj()
-        return _State(eps, line, back * _as_complex(velocity), back * _as_complex(acceleration))
+        integrals = arc_integrals(eps, *self._arcs(eps, v, a))
+        force, slopes = forces_of_integrals(
+            line, v, a, integrals, self._viscous, self._inertial, self.clearance
+        )
+        return FilmForces(force, *slopes)
 
-    def _arcs(self, state: _State) -> Arcs:
+    def _arcs(
+        self, eps: Array, v: ComplexArray, a: ComplexArray
+    ) -> tuple[Array, NDArray[np.int64]]:
+        """Ends of each state's arcs, and their number."""
         if not self.cavitation:
-            return full_circle(len(state.eps))
+            ends = np.tile([0.0, 2.0 * np.pi], (len(eps), 1, 1))
+            return ends, np.ones(len(eps), dtype=np.int64)
+        ends = np.empty((len(eps), MOST_ARCS, 2))
         scale = self._inertial * self.clearance**2 / self._viscous
-        return positive_arcs(state.eps, state.v, scale * state.a)
-
-    def _complex_force(
-        self,
-        state: _State,
-        j30: ComplexArray,
-        j32: ComplexArray,
-        j10: ComplexArray,
-        j12: ComplexArray,
-    ) -> ComplexArray:
-        viscous = self._viscous / self.clearance**3 * (j30 * state.v + j32 * state.v.conj())
-        inertial = self._inertial / self.clearance * (j10 * state.a + j12 * state.a.conj())
-        force: ComplexArray = -0.5 * state.line * (viscous + inertial)
-        return force
-
-
-def _as_complex(pairs: Array) -> ComplexArray:
-    z: ComplexArray = pairs[:, 0] + 1j * pairs[:, 1]
-    return z
-
-
-def _as_xy(z: ComplexArray) -> Array:
-    return np.stack([z.real, z.imag], axis=-1)
-
-
-def _as_matrix(by_z: ComplexArray, by_conj: ComplexArray) -> Array:
-    """Real (n, 2, 2) derivative from those by z and by conj(z) (Wirtinger)."""
-    total, difference = by_z + by_conj, by_z - by_conj
-    row_x = np.stack([total.real, -difference.imag], axis=-1)
-    row_y = np.stack([total.imag, difference.real], axis=-1)
-    return np.stack([row_x, row_y], axis=-2)
+        return ends, positive_arcs(eps, v, scale * a, ends)
