@@ -5,7 +5,6 @@ damper, flattened row by row. The films' forces are evaluated at time samples an
 (alternating frequency/time), and so are their derivatives: nothing is differenced.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,15 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.film import FilmModel, film_of
+from sfd_hbm_ros.hbm.clearance import greatest_eccentricity, largest_step
+from sfd_hbm_ros.hbm.film_terms import FilmTerms
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.solution import Solution
 from sfd_hbm_ros.machine import Machine, MachineError
 from sfd_hbm_ros.rotor import Condensation, Condensed, RotorModel, assemble
 
 Array = NDArray[np.float64]
-
-_NEAREST = 1.0 - 1e-9  # eccentricity beyond which no step goes
-_ROOM = 0.9  # part of the gap to the clearance that one step may close at any time sample
 
 
 class HarmonicBalance:
@@ -67,9 +65,9 @@ class HarmonicBalance:
             If a harmonic meets an undamped resonance of the shaft with its journals held.
         """
         condensed = self.condensation.at(speed, self.harmonics.orders)
-        load = np.linalg.norm(self.model.linear_force(speed, self.harmonics.orders))
+        load = self.model.load(speed, condensed.orders)
         force = self.harmonics.coefficients(condensed.force)
-        return Equations(self, condensed, force, float(load))
+        return Equations(self, condensed, force, load)
 
     def response(self, solution: Solution) -> NDArray[np.complex128]:
         """Response of the whole rotor (R1 of Eq. 7, with the journals).
@@ -111,6 +109,11 @@ class Equations:
         """Rotor speed [rad/s]."""
         return self.condensed.speed
 
+    @property
+    def scale(self) -> Array:
+        """The clearance each coefficient is compared to [m], (rows n,)."""
+        return np.tile(self.balance.clearances, len(self.force))
+
     @cached_property
     def linear(self) -> Array:
         """Dynamic stiffness over all coefficients [N/m], (rows n, rows n)."""
@@ -134,84 +137,53 @@ class Equations:
 
     def residual(self, x: Array) -> Array:
         """Imbalance of the forces [N], (rows n,), at coefficients x (rows n,) [m]."""
-        harmonics = self.balance.harmonics
-        film = np.empty_like(self.force)
-        for columns, model, motion in self._journals(x):
-            film[:, columns] = harmonics.projection @ model.force(*motion)
-        return self._imbalance(x, film)
+        return self._imbalance(x, self._films(x))
+
+    def rotor_force(self, x: Array) -> Array:
+        """Force that moves the rotor with the coefficients x [N], (rows n,)."""
+        force: Array = self.linear @ x
+        return force
 
     def linearise(self, x: Array) -> tuple[Array, Array]:
         """Residual and its derivative [N/m], (rows n, rows n), by the coefficients."""
-        harmonics, w = self.balance.harmonics, self.speed
-        e0, e1, e2 = (basis[:, np.newaxis, np.newaxis, :] for basis in harmonics.bases)
-        film = np.empty_like(self.force)
-        jacobian = self.linear.copy()
-        blocks = jacobian.reshape(self.force.shape * 2)
-        for columns, model, motion in self._journals(x):
-            f = model.linearise(*motion)
-            film[:, columns] = harmonics.projection @ f.force
-            by_coefficients = (
-                f.by_position[..., np.newaxis] * e0
-                + f.by_velocity[..., np.newaxis] * (w * e1)
-                + f.by_acceleration[..., np.newaxis] * (w * w * e2)
-            )
-            block = harmonics.projection @ by_coefficients.reshape(harmonics.samples, -1)
-            block = block.reshape(harmonics.rows, 2, 2, harmonics.rows)
-            blocks[:, columns, :, columns] -= block.transpose(0, 1, 3, 2)
-        return self._imbalance(x, film), jacobian
+        films, jacobian = self._films(x), self.linear.copy()
+        films.subtract_derivative(jacobian)
+        return self._imbalance(x, films), jacobian
 
     def slope_by_speed(self, x: Array) -> Array:
         """Derivative of the residual by the speed [N s], (rows n,)."""
-        balance, harmonics, w = self.balance, self.balance.harmonics, self.speed
-        stiffness, force = balance.condensation.slope(w, harmonics.orders)
-        _, e1, e2 = harmonics.bases
-        film = np.empty_like(self.force)
-        coefficients = x.reshape(self.force.shape)
-        for columns, model, motion in self._journals(x):
-            q = coefficients[:, columns]
-            f = model.linearise(*motion)
-            change = np.einsum("tij,tj->ti", f.by_velocity, e1 @ q)
-            change += np.einsum("tij,tj->ti", f.by_acceleration, 2.0 * w * (e2 @ q))
-            film[:, columns] = harmonics.projection @ change
-        linear = self._flat(harmonics.real_matrix(stiffness)) @ x
-        slope: Array = linear - (harmonics.coefficients(force) + film).ravel()
-        return slope
+        harmonics, condensed = self.balance.harmonics, self.condensed
+        amplitudes = harmonics.amplitudes(x.reshape(self.force.shape))
+        rotor = (condensed.stiffness_slope @ amplitudes[..., np.newaxis])[..., 0]
+        linear = harmonics.coefficients(rotor - condensed.force_slope)
+        return (linear - self._films(x).slope_by_speed()).ravel()
 
     def eccentricity(self, x: Array) -> float:
         """Greatest eccentricity of any journal at the time samples."""
-        positions = self.balance.harmonics.bases[0] @ (
-            x.reshape(self.force.shape) / self.balance.clearances
-        )
-        pairs = positions.reshape(len(positions), -1, 2)
-        return float(np.linalg.norm(pairs, axis=-1).max())
+        return greatest_eccentricity(self._positions(x), self.balance.clearances)
 
     def largest_step(self, x: Array, step: Array) -> float:
         """Part of a step, at most 1, that keeps every time sample off the clearance."""
-        basis = self.balance.harmonics.bases[0]
-        c = self.balance.clearances[::2]
-        start = (basis @ x.reshape(self.force.shape)).reshape(len(basis), -1, 2)
-        move = (basis @ step.reshape(self.force.shape)).reshape(len(basis), -1, 2)
-        distance = np.linalg.norm(start, axis=-1)
-        limit = np.minimum(distance + _ROOM * (c - distance), _NEAREST * c)
-        # positive root s of |start + s move| = limit
-        a = np.maximum((move**2).sum(axis=-1), np.finfo(float).tiny)
-        b = (start * move).sum(axis=-1)
-        gap = np.maximum(limit**2 - distance**2, 0.0)
-        root = gap / np.maximum(b + np.sqrt(b * b + a * gap), np.finfo(float).tiny)
-        return float(min(1.0, root.min()))
+        return largest_step(self._positions(x), self._positions(step), self.balance.clearances)
 
-    def _journals(self, x: Array) -> Iterator[tuple[slice, FilmModel, tuple[Array, Array, Array]]]:
-        """Columns, film and sampled motion (position, velocity, acceleration) of each damper."""
-        e0, e1, e2 = self.balance.harmonics.bases
-        coefficients = x.reshape(self.force.shape)
-        for damper, model in enumerate(self.balance.films):
-            columns = slice(2 * damper, 2 * damper + 2)
-            q = coefficients[:, columns]
-            yield columns, model, (e0 @ q, self.speed * (e1 @ q), self.speed**2 * (e2 @ q))
+    def _positions(self, x: Array) -> Array:
+        positions: Array = self.balance.harmonics.bases[0] @ x.reshape(self.force.shape)
+        return positions
 
-    def _imbalance(self, x: Array, film: Array) -> Array:
-        imbalance: Array = self.linear @ x - (self.force + film).ravel()
-        return imbalance
+    def _films(self, x: Array) -> FilmTerms:
+        """The films' terms; those at the latest x are kept, as residual and slope share them."""
+        latest = self.__dict__.get("_latest")
+        if latest is None or not np.array_equal(latest[0], x):
+            balance = self.balance
+            terms = FilmTerms(
+                balance.harmonics, balance.films, self.speed, x.reshape(self.force.shape)
+            )
+            latest = self.__dict__["_latest"] = x.copy(), terms
+        films: FilmTerms = latest[1]
+        return films
+
+    def _imbalance(self, x: Array, films: FilmTerms) -> Array:
+        return self.rotor_force(x) - (self.force + films.force()).ravel()
 
     def _flat(self, blocks: Array) -> Array:
         return blocks.reshape(self.force.size, self.force.size)

@@ -10,8 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.hbm.balance import Equations
-from sfd_hbm_ros.hbm.family import Family
+from sfd_hbm_ros.hbm.family import Family, FamilyMember
 from sfd_hbm_ros.hbm.options import DEFAULTS, ContinuationOptions, NewtonOptions
 from sfd_hbm_ros.hbm.points import Point, Stop
 from sfd_hbm_ros.rotor import ResonanceError
@@ -67,8 +66,7 @@ class Branch:
         self.low, self.high = sorted(bounds or (start, end))
         self.stop: Stop | None = None
         self._x = x
-        c = family.at(start).balance.clearances
-        self._scale: Array = np.append(np.tile(c, x.size // c.size), self.high - self.low)
+        self._scale: Array = np.append(family.at(start).scale, self.high - self.low)
         towards_end = np.zeros(self._scale.size)
         towards_end[-1] = np.sign(end - start)
         self._direction = towards_end if direction is None else direction
@@ -132,7 +130,7 @@ class Branch:
             before = norm
         return None
 
-    def _balanced(self, equations: Equations, x: Array, norm: float, before: float) -> bool:
+    def _balanced(self, equations: FamilyMember, x: Array, norm: float, before: float) -> bool:
         """Whether the forces balance, or as nearly as the rounding of the condensation allows.
 
         The rounding depends on the parameter, so that Newton's method cannot work it off while
@@ -140,7 +138,7 @@ class Branch:
         """
         if norm <= self.newton.tolerance * (equations.load or 1.0):
             return True
-        forces = float(np.linalg.norm(equations.linear @ x))
+        forces = float(np.linalg.norm(equations.rotor_force(x)))
         return norm <= _ROUNDING * forces and norm > _STAGNATION * before
 
     def _point(self, x: Array, value: float, direction: Array, iterations: int) -> Point:
@@ -152,7 +150,7 @@ class Branch:
         return self._with_tangent(equations, value, x, matrix, iterations)
 
     def _with_tangent(
-        self, equations: Equations, value: float, x: Array, matrix: Array, iterations: int
+        self, equations: FamilyMember, value: float, x: Array, matrix: Array, iterations: int
     ) -> Point:
         tangent = np.linalg.solve(matrix, np.eye(len(matrix))[-1])
         tangent /= np.linalg.norm(tangent)
@@ -166,7 +164,7 @@ class Branch:
         matrix[-1] = direction
         return matrix
 
-    def _at(self, value: float) -> Equations:
+    def _at(self, value: float) -> FamilyMember:
         try:
             return self.family.at(value)
         except ResonanceError:  # a single value, beside which the branch goes on

@@ -1,12 +1,13 @@
 """Families of equations: harmonic balance as one parameter varies."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.balance import Equations, HarmonicBalance
+from sfd_hbm_ros.hbm.newton import System
 from sfd_hbm_ros.machine import Machine, get, override
 
 Array = NDArray[np.float64]
@@ -14,13 +15,38 @@ Array = NDArray[np.float64]
 _DIFFERENCE = 1e-4  # relative step at which equations are differenced by a general parameter
 
 
+class FamilyMember(System, Protocol):
+    """Equations at one value of a parameter; unknown are n coefficients x."""
+
+    @property
+    def balance(self) -> HarmonicBalance:
+        """The machine and the harmonics."""
+
+    @property
+    def speed(self) -> float:
+        """Rotor speed [rad/s]."""
+
+    @property
+    def scale(self) -> Array:
+        """What each unknown is compared to, (n,)."""
+
+    def rotor_force(self, x: Array) -> Array:
+        """Force that moves the rotor with the coefficients [N]."""
+
+    def eccentricity(self, x: Array) -> float:
+        """Greatest eccentricity of any journal."""
+
+    def slope_by_speed(self, x: Array) -> Array:
+        """Derivative of the residual by the speed [N s], (n,)."""
+
+
 class Family(Protocol):
     """Equations that depend on one parameter."""
 
-    def at(self, value: float) -> Equations:
+    def at(self, value: float) -> FamilyMember:
         """Equations at a value of the parameter."""
 
-    def slope(self, equations: Equations, value: float, x: Array) -> Array:
+    def slope(self, equations: FamilyMember, value: float, x: Array) -> Array:
         """Derivative by the parameter of the residual of `equations`, those at `value`."""
 
 
@@ -34,7 +60,7 @@ class SpeedFamily:
         """See `Family`."""
         return self.balance.at(value)
 
-    def slope(self, equations: Equations, value: float, x: Array) -> Array:
+    def slope(self, equations: FamilyMember, value: float, x: Array) -> Array:
         """See `Family`; by the analytic derivatives of rotor and film."""
         return equations.slope_by_speed(x)
 
@@ -51,7 +77,7 @@ class LoadFamily:
         """See `Family`."""
         return self.equations.with_force(self.base + value * self.part)
 
-    def slope(self, equations: Equations, value: float, x: Array) -> Array:
+    def slope(self, equations: FamilyMember, value: float, x: Array) -> Array:
         """See `Family`."""
         return -self.part.ravel()
 
@@ -88,7 +114,7 @@ class ParameterFamily:
         """The machine at a value of the parameter."""
         return override(self.balance.machine, self.path, value)
 
-    def slope(self, equations: Equations, value: float, x: Array) -> Array:
+    def slope(self, equations: FamilyMember, value: float, x: Array) -> Array:
         """See `Family`; by fourth-order differences of the residual, as any entry may vary."""
         step = _DIFFERENCE * (
             abs(value) or float(abs(get(self.balance.machine, self.path))) or 1.0
@@ -98,3 +124,7 @@ class ParameterFamily:
             12 * step
         )
         return slope
+
+
+MachineFamily: TypeAlias = SpeedFamily | ParameterFamily
+"""Families of which each member is a machine's own equations, and so known at any harmonics."""

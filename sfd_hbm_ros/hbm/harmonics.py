@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sfd_hbm_ros.hbm.jacobian import block_diagonal
+
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
@@ -118,6 +120,20 @@ class Harmonics:
         projection[0] *= 0.5
         return projection
 
+    @cached_property
+    def spectrum(self) -> Array:
+        """Means of samples times cos(k t) and times sin(k t), k up to twice the highest multiple.
+
+        t is the angle of the period.
+
+        Returns
+        -------
+        (2 m, samples) array, m rows of cosines first.
+        """
+        orders = np.arange(2 * self.multiples[-1] + 1)
+        angle = np.multiply.outer(orders, 2.0 * np.pi * np.arange(self.samples) / self.samples)
+        return np.concatenate([np.cos(angle), np.sin(angle)]) / self.samples
+
     def amplitudes(self, coefficients: Array) -> ComplexArray:
         """Complex amplitudes (orders, n) of coefficients (rows, n)."""
         q = np.empty((len(self.multiples), coefficients.shape[1]), dtype=complex)
@@ -156,11 +172,4 @@ class Harmonics:
         -------
         (rows, n, rows, n) array, zero between different orders.
         """
-        n = blocks.shape[1]
-        matrix = np.zeros((self.rows, n, self.rows, n))
-        matrix[0, :, 0, :] = blocks[0].real
-        cos, sin = np.arange(1, self.rows, 2), np.arange(2, self.rows, 2)
-        matrix[cos, :, cos, :] = matrix[sin, :, sin, :] = blocks[1:].real
-        matrix[cos, :, sin, :] = blocks[1:].imag
-        matrix[sin, :, cos, :] = -blocks[1:].imag
-        return matrix
+        return block_diagonal(np.array(blocks, dtype=complex, order="C"))

@@ -14,6 +14,7 @@ class Stop(Enum):
 
     RANGE = "the end of the parameter's range was reached"
     CLOSED = "the branch came back to its first point"
+    JOINED = "the branch joined the one that it had left"
     CLEARANCE = "the orbit closes on the clearance"
     STEP = "the step became too short for the corrector to converge"
     POINTS = "the largest number of points was reached"

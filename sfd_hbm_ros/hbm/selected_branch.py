@@ -36,54 +36,85 @@ class SelectedPoint:
     neglect: Neglect
 
 
-def selected_branch(
-    balance: SelectedBalance,
-    start: float,
-    end: float,
-    options: ContinuationOptions | None = None,
-) -> Iterator[SelectedPoint]:
-    """Follow the response from one speed [rad/s] to another, in the harmonics that matter.
+class SelectedBranch(Branch):
+    """A branch over the speed, followed in the harmonics that matter.
 
     Every point lies within the tolerance of the trial group's solution, by the estimate of
     `SelectedBalance.neglect`. A group that is too small at a point is enlarged, and the step taken
     again; one that is too large shrinks for the following steps.
+
+    Iterating yields the points in the trial group's coefficients, those out of use exactly zero;
+    events between them are located with the whole group.
+
+    Parameters
+    ----------
+    balance : SelectedBalance
+        The machine, its trial group and the tolerance.
+    start, end : float
+        Speeds from which and to which the branch is followed [rad/s].
+    options : ContinuationOptions, optional
+        Settings.
 
     Raises
     ------
     ArithmeticError
         If no solution was found at the start, or a larger group has none.
     """
-    options = options or ContinuationOptions()
-    bounds = (min(start, end), max(start, end))
-    group, x, neglect = balance.solve(start)
-    value, direction = start, None
-    at: SelectedPoint | None = None
-    while True:
-        family = SpeedFamily(balance.balance(group))
-        branch = Branch(family, x, value, end, bounds, options, direction=direction)
-        for point in branch:
-            if at is not None and point.value == at.point.value:
-                continue  # where the branch was taken up again
-            neglect = balance.neglect(group, point.value, point.x)
-            other = balance.adapt(group, point.x, neglect)
-            if neglect.error <= balance.tolerance:
-                at = SelectedPoint(point, group, neglect)
-                yield at
-                if other == group:
+
+    def __init__(
+        self,
+        balance: SelectedBalance,
+        start: float,
+        end: float,
+        options: ContinuationOptions | None = None,
+    ) -> None:
+        self.balance = balance
+        self._first = group, x, _ = balance.solve(start)
+        super().__init__(
+            SpeedFamily(balance.full), balance.embed(group, x), start, end, options=options
+        )
+
+    def __iter__(self) -> Iterator[Point]:
+        for at in self.selected():
+            x, tangent = (
+                self.balance.embed(at.group, part) for part in (at.point.x, at.point.tangent[:-1])
+            )
+            yield replace(at.point, x=x, tangent=np.append(tangent, at.point.tangent[-1]))
+
+    def selected(self) -> Iterator[SelectedPoint]:
+        """The points in the coefficients in use."""
+        balance, options = self.balance, self.options
+        group, x, neglect = self._first
+        value, direction = self.start, None
+        at: SelectedPoint | None = None
+        while True:
+            family = SpeedFamily(balance.balance(group))
+            bounds = (self.low, self.high)
+            branch = Branch(family, x, value, self.end, bounds, options, direction=direction)
+            for point in branch:
+                if at is not None and point.value == at.point.value:
+                    continue  # where the branch was taken up again
+                neglect = balance.neglect(group, point.value, point.x)
+                other = balance.adapt(group, point.x, neglect)
+                if neglect.error <= balance.tolerance:
+                    at = SelectedPoint(point, group, neglect)
+                    yield at
+                    if other == group:
+                        continue
+                if at is None:
+                    raise ArithmeticError("the harmonics that solved the start are too few")
+                changed = _change(balance, at, other)
+                if changed is None:
                     continue
-            if at is None:
-                raise ArithmeticError("the group of harmonics that solved the start is too small")
-            changed = _change(balance, at, other)
-            if changed is None:
-                continue
-            if at.point is not point and at.group == group:  # the step was refused: a shorter one
-                step = max(0.5 * branch.distance(at.point, point), options.shortest_step)
-                options = replace(options, first_step=min(step, options.longest_step))
-            group, x, value = other, changed, at.point.value
-            direction = _regrouped(balance, at, other)
-            break
-        else:
-            return
+                if at.point is not point and at.group == group:  # refused: a shorter step
+                    step = max(0.5 * branch.distance(at.point, point), options.shortest_step)
+                    options = replace(options, first_step=min(step, options.longest_step))
+                group, x, value = other, changed, at.point.value
+                direction = _regrouped(balance, at, other)
+                break
+            else:
+                self.stop = branch.stop
+                return
 
 
 def _change(balance: SelectedBalance, at: SelectedPoint, group: Group) -> Array | None:

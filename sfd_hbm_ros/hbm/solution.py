@@ -1,6 +1,7 @@
 """What a harmonic balance solve hands on: the motion of each damper's journal."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
@@ -129,6 +130,16 @@ class Solution:
     def iterations(self) -> int:
         """Number of Newton steps of the last attempt."""
         return max(len(self.residuals) - 1, 0)
+
+    @property
+    def orders(self) -> tuple[Fraction, ...]:
+        """Orders of the speed that the motion has: those whose coefficients are not all zero."""
+        amplitudes = self.harmonics.amplitudes(self.coefficients)
+        return tuple(
+            Fraction(multiple, self.harmonics.revolutions)
+            for multiple, amplitude in zip(self.harmonics.multiples, amplitudes, strict=True)
+            if amplitude.any()
+        )
 
     @property
     def coefficients(self) -> Array:

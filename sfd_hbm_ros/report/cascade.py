@@ -112,7 +112,9 @@ def _run_up(curve: ResponseCurve) -> list[Solution]:
     for branch in curve.branches:
         for stretch in stretches(branch):
             if stretch.stable:
-                new = [one for one in branch.solutions[stretch.points] if one.speed > reached]
+                points = np.arange(len(branch.solutions))[stretch.points]
+                stable = [branch.solutions[i] for i in points[branch.stable[points]]]
+                new = [one for one in stable if one.speed > reached]
                 met += new
                 reached = max([reached, *(one.speed for one in new)])
     return sorted(met, key=lambda one: one.speed)

@@ -27,6 +27,7 @@ _MARKERS = {
     Instability.FOLD: "o",
     Instability.NEIMARK_SACKER: "s",
     Instability.PERIOD_DOUBLING: "D",
+    Instability.SYMMETRY_BREAKING: "^",
 }
 
 
@@ -51,7 +52,7 @@ def draw_response(
     arrows = draw_jumps(axes, jumps, damper, abscissa)
     label_abscissa(axes, abscissa.title)
     label_eccentricity(axes)
-    keys = [*_keys(curve.branches, INK), *arrows]
+    keys = [*_keys(curve.every_branch, INK), *arrows]
     if keys:
         legend(axes, keys)
 
@@ -76,12 +77,12 @@ def draw_study(axes: Axes, curves: Mapping[str, ResponseCurve], damper: str) -> 
         names.append(Line2D([], [], color=colour, linewidth=LINE, label=name))
     label_abscissa(axes, abscissa.title)
     label_eccentricity(axes)
-    branches = [branch for curve in curves.values() for branch in curve.branches]
+    branches = [branch for curve in curves.values() for branch in curve.every_branch]
     legend(axes, [*names, *_keys(branches, QUIET)])
 
 
 def _draw(axes: Axes, curve: ResponseCurve, damper: str, abscissa: Abscissa, colour: str) -> None:
-    for branch in curve.branches:
+    for branch in curve.every_branch:
         place, eccentricity = branch.values / abscissa.unit, branch.eccentricity(damper)
         draw_branch(axes, branch, place, eccentricity, colour)
         for i, kind in losses(branch):

@@ -1,8 +1,8 @@
 """Stable and unstable stretches of a branch, where they meet, and how they are drawn."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
-from itertools import groupby, pairwise
+from itertools import groupby
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -39,7 +39,8 @@ class Stretch:
 def stretches(branch: CurveBranch) -> list[Stretch]:
     """The stretches of a branch, in the order of its arc."""
     found, start = [], 0
-    arcs = (_stable_after(branch, i) for i in range(len(branch.solutions) - 1))
+    changes = {point for point, _ in losses(branch)}
+    arcs = (_stable_after(branch, changes, i) for i in range(len(branch.solutions) - 1))
     for stable, run in groupby(arcs):
         end = start + len(list(run))
         found.append(Stretch(slice(start, end + 1), stable))
@@ -48,18 +49,9 @@ def stretches(branch: CurveBranch) -> list[Stretch]:
 
 
 def losses(branch: CurveBranch) -> Iterator[tuple[int, Instability]]:
-    """Points at which a branch folds or loses its stability in another way, and which way.
-
-    Of two neighbours between which stability is lost, the stable one counts.
-    """
+    """Points at which a branch folds or loses its stability in another way, and which way."""
     yield from ((int(i), Instability.FOLD) for i in branch.fold.nonzero()[0])
-    for i, (one, two) in enumerate(pairwise(branch.instability)):
-        if branch.fold[i] or branch.fold[i + 1]:
-            continue
-        if one is None and two is not None:
-            yield i, two
-        elif one is not None and two is None:
-            yield i + 1, one
+    yield from branch.onsets
 
 
 def draw_branch(
@@ -91,7 +83,7 @@ def unstable_key(branches: Iterable[CurveBranch], colour: str) -> list[Line2D]:
     return [Line2D([], [], color=colour, linewidth=LINE, linestyle=DASHES, label="unstable")]
 
 
-def _stable_after(branch: CurveBranch, i: int) -> bool:
-    """Whether the arc from a point to the next is stable; a fold belongs to both its sides."""
-    stable = [branch.instability[j] is None for j in (i, i + 1) if not branch.fold[j]]
+def _stable_after(branch: CurveBranch, changes: Container[int], i: int) -> bool:
+    """Whether the arc from a point to the next is stable; changes belong to both their sides."""
+    stable = [branch.instability[j] is None for j in (i, i + 1) if j not in changes]
     return bool(stable) and all(stable)

@@ -15,8 +15,9 @@ def write_table(curve: ResponseCurve, path: str | Path) -> None:
 
     Columns are the speed [rpm], the entry of the machine file if one varies, whether the point is
     stable (1 or 0), and of each damper the greatest eccentricity and the coefficients of Eq. 2
-    [m]: mean, then cosine and sine of each order, of x and then of y. Numbers are written in full
-    precision.
+    [m]: mean, then cosine and sine of each order, of x and then of y; at last the orders in use,
+    and the branch by its number from 0, the detached ones behind the others. Numbers are written
+    in full precision.
 
     Parameters
     ----------
@@ -37,7 +38,7 @@ def write_table(curve: ResponseCurve, path: str | Path) -> None:
 
 
 def _header(curve: ResponseCurve) -> list[str]:
-    harmonics = curve.balance.harmonics
+    harmonics = curve.harmonics
     orders = [Fraction(multiple, harmonics.revolutions) for multiple in harmonics.multiples]
     waves = [f"{order}_{wave}" for order in orders[1:] for wave in ("cos", "sin")]
     coefficients = [f"{axis}_{wave}" for axis in "xy" for wave in ("0", *waves)]
@@ -51,18 +52,24 @@ def _header(curve: ResponseCurve) -> list[str]:
             for damper in curve.dampers
             for column in ("eccentricity_max", *coefficients)
         ),
+        "orders",
+        "branch",
     ]
 
 
-def _rows(curve: ResponseCurve) -> Iterator[list[float]]:
-    varied, harmonics = Abscissa.of(curve).path, curve.balance.harmonics
-    for branch in curve.branches:
+def _rows(curve: ResponseCurve) -> Iterator[list[float | str]]:
+    varied, harmonics = Abscissa.of(curve).path, curve.harmonics
+    for number, branch in enumerate(curve.every_branch):
         for value, solution, stable in zip(
             branch.values.tolist(), branch.solutions, branch.stable, strict=True
         ):
-            row = [solution.speed / RPM, *([] if varied is None else [value]), int(stable)]
+            row: list[float | str] = [
+                solution.speed / RPM,
+                *([] if varied is None else [value]),
+                int(stable),
+            ]
             for damper in curve.dampers:
                 motion = solution.journals[damper]
                 coefficients = harmonics.change_from(motion.harmonics, motion.coefficients)
                 row += [motion.eccentricity_max, *coefficients.T.ravel().tolist()]
-            yield row
+            yield [*row, " ".join(map(str, solution.orders)), number]

@@ -16,15 +16,15 @@ from sfd_hbm_ros.hbm.family import LoadFamily, SpeedFamily
 from sfd_hbm_ros.hbm.newton import newton
 from sfd_hbm_ros.hbm.options import ContinuationOptions
 from sfd_hbm_ros.hbm.points import Stop
+from sfd_hbm_ros.hbm.solve import solution_at
 from sfd_hbm_ros.response.curve import ResponseCurve
-from sfd_hbm_ros.response.judged import CurveBranch, judged
-from sfd_hbm_ros.response.jumps import solutions_at
+from sfd_hbm_ros.response.judged import CurveBranch, Progress, distance, judged
+from sfd_hbm_ros.response.jumps import SAME, solutions_at
 from sfd_hbm_ros.rotor import critical_speeds, hold_journals
 
 Array = NDArray[np.float64]
 
 _LEAST, _MOST = 0.3, 4.0  # parts of the unbalance between which it is followed
-_SAME = 1e-5  # of the clearance, within which two responses are one
 
 
 def detached_branches(
@@ -33,6 +33,7 @@ def detached_branches(
     highest: float,
     speeds: int = 9,
     options: ContinuationOptions | None = None,
+    progress: Progress | None = None,
 ) -> list[CurveBranch]:
     """Branches of a machine that its response curve does not reach.
 
@@ -48,6 +49,8 @@ def detached_branches(
         damper closes on its clearance. A detached branch that spans none of these is not found.
     options : ContinuationOptions, optional
         Settings of the continuation.
+    progress : callable, optional
+        Called with the speed of every point, on the way to other responses too.
 
     Returns
     -------
@@ -56,10 +59,11 @@ def detached_branches(
     """
     found: list[CurveBranch] = []
     for speed in _speeds(curve.balance, lowest, highest, speeds):
-        for x in _responses(curve.balance, speed, options):
+        for x in _responses(curve.balance, speed, options, progress):
             if _known((*curve.branches, *found), curve, speed, x):
                 continue
-            found.append(_both_ways(curve.balance, x, speed, (lowest, highest), options))
+            bounds = lowest, highest
+            found.append(_both_ways(curve.balance, x, speed, bounds, options, progress))
     return found
 
 
@@ -72,7 +76,10 @@ def _speeds(balance: HarmonicBalance, lowest: float, highest: float, number: int
 
 
 def _responses(
-    balance: HarmonicBalance, speed: float, options: ContinuationOptions | None
+    balance: HarmonicBalance,
+    speed: float,
+    options: ContinuationOptions | None,
+    progress: Progress | None,
 ) -> Iterator[Array]:
     """Responses at a speed that one branch in the unbalance connects."""
     equations = balance.at(speed)
@@ -85,6 +92,8 @@ def _responses(
         return
     before = None
     for point in Branch(family, start.x, _LEAST, _MOST, options=options):
+        if progress is not None:
+            progress(speed)
         if before is not None and (before.value - 1.0) * (point.value - 1.0) < 0.0:
             part = (1.0 - before.value) / (point.value - before.value)
             result = newton(equations, before.x + part * (point.x - before.x))
@@ -97,11 +106,11 @@ def _known(
     branches: tuple[CurveBranch, ...], curve: ResponseCurve, speed: float, x: Array
 ) -> bool:
     """Whether a response lies on one of the branches."""
-    c = curve.balance.clearances
+    own = solution_at(curve.balance, speed, x)
     return any(
-        np.abs((solution.coefficients - x.reshape(-1, c.size)) / c).max() < _SAME
+        distance(solution, own) < SAME
         for branch in branches
-        for _, solution in solutions_at(curve.family, branch, speed)
+        for _, solution in solutions_at(branch, speed)
     )
 
 
@@ -111,14 +120,19 @@ def _both_ways(
     speed: float,
     bounds: tuple[float, float],
     options: ContinuationOptions | None,
+    progress: Progress | None,
 ) -> CurveBranch:
-    """The branch through a response, closed or followed to both of its ends."""
+    """The branch through a response, closed or followed to both ends of it in the range."""
     family = SpeedFamily(balance)
-    ahead = judged(Branch(family, x, speed, bounds[1], bounds, options))
+    if speed in bounds:
+        other = bounds[1] if speed == bounds[0] else bounds[0]
+        return judged(Branch(family, x, speed, other, bounds, options), progress)
+    ahead = judged(Branch(family, x, speed, bounds[1], bounds, options), progress)
     if ahead.stop is Stop.CLOSED:
         return ahead
-    behind = judged(Branch(family, x, speed, bounds[0], bounds, options))
+    behind = judged(Branch(family, x, speed, bounds[0], bounds, options), progress)
     return CurveBranch(
+        family,
         np.concatenate([behind.values[:0:-1], ahead.values]),
         behind.solutions[:0:-1] + ahead.solutions,
         behind.instability[:0:-1] + ahead.instability,

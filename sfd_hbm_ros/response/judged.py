@@ -14,6 +14,7 @@ from sfd_hbm_ros.hbm.events import locate, with_folds
 from sfd_hbm_ros.hbm.family import Family
 from sfd_hbm_ros.hbm.points import Point, Stop
 from sfd_hbm_ros.hbm.solve import solution_at
+from sfd_hbm_ros.hbm.switching import breaks_symmetry
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -25,18 +26,22 @@ class CurveBranch:
 
     Attributes
     ----------
+    family : Family
+        The equations of its points.
     values : (m,) array
         The parameter that varies: rotor speed [rad/s], or an entry of the machine file.
     solutions : tuple of Solution
         The m points.
     instability : tuple of Instability or None
-        How each is unstable; None for a stable point, `Instability.FOLD` for a fold.
+        How each is unstable; None for a stable point, `Instability.FOLD` for a fold. Where a
+        symmetry of the response breaks without a fold it is `Instability.SYMMETRY_BREAKING`.
     fold : (m,) boolean array
         Whether each is a fold.
     stop : Stop
         Why the branch ends.
     """
 
+    family: Family
     values: Array
     solutions: tuple[Solution, ...]
     instability: tuple[Instability | None, ...]
@@ -53,6 +58,16 @@ class CurveBranch:
         """Rotor speeds [rad/s], (m,)."""
         return np.array([solution.speed for solution in self.solutions])
 
+    @property
+    def onsets(self) -> list[tuple[int, Instability]]:
+        """Points at which stability is lost, along the arc or against it, and how; no folds."""
+        kinds = (Instability.FOLD, *self.instability, Instability.FOLD)
+        return [
+            (i, kind)
+            for i, kind in enumerate(self.instability)
+            if kind not in (None, Instability.FOLD) and None in (kinds[i], kinds[i + 2])
+        ]
+
     def eccentricity(self, damper: str) -> Array:
         """Greatest eccentricity of a damper's orbit, (m,)."""
         return np.array([one.journals[damper].eccentricity_max for one in self.solutions])
@@ -61,6 +76,18 @@ class CurveBranch:
     def worst_eccentricity(self) -> Array:
         """Greatest eccentricity of any damper, (m,)."""
         return np.array([one.eccentricity_max for one in self.solutions])
+
+
+def distance(one: Solution, other: Solution) -> float:
+    """Greatest difference of the coefficients of two responses, of the clearance.
+
+    They may be balanced over different numbers of revolutions.
+    """
+    if one.harmonics.revolutions < other.harmonics.revolutions:
+        one, other = other, one
+    shorter = one.harmonics.change_from(other.harmonics, other.coefficients)
+    clearances = np.repeat([motion.clearance for motion in one.journals.values()], 2)
+    return float(np.abs((one.coefficients - shorter) / clearances).max())
 
 
 class _Judged(NamedTuple):
@@ -86,6 +113,7 @@ def judged(branch: Branch, progress: Progress | None = None) -> CurveBranch:
         points.append(one)
     assert branch.stop is not None
     return CurveBranch(
+        branch.family,
         np.array([one.point.value for one in points]),
         tuple(one.solution for one in points),
         tuple(one.instability for one in points),
@@ -115,6 +143,8 @@ def _change(branch: Branch, before: _Judged, after: _Judged) -> _Judged | None:
     if point is None:
         return None
     kind = before.instability or after.instability
+    if kind is Instability.FOLD and breaks_symmetry(branch.family.at(point.value), point.x):
+        kind = Instability.SYMMETRY_BREAKING
     return _judge(branch.family, point, False)._replace(instability=kind)
 
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from sfd_hbm_ros.hbm import Instability
 from sfd_hbm_ros.response.curve import ResponseCurve
-from sfd_hbm_ros.response.judged import CurveBranch
 from sfd_hbm_ros.response.jumps import Direction, Jump, jumps
 
 
@@ -47,11 +46,11 @@ class Summary:
 
     @cached_property
     def instabilities(self) -> list[tuple[Instability, Mark]]:
-        """Where a branch loses stability other than at a fold, with the first unstable point."""
+        """Where a branch loses stability other than at a fold, along its arc or against it."""
         return [
             (kind, Mark(float(branch.values[i]), float(branch.worst_eccentricity[i])))
             for branch in self.curve.branches
-            for i, kind in _onsets(branch)
+            for i, kind in branch.onsets
         ]
 
     @cached_property
@@ -95,13 +94,3 @@ class Summary:
             for a, b in ((left[-1], left[-1] + 1), (right[0], right[0] - 1))
         ]
         return float(x[top] / abs(sides[1] - sides[0]))
-
-
-def _onsets(branch: CurveBranch) -> list[tuple[int, Instability]]:
-    """First points of every unstable stretch that does not begin at a fold."""
-    kinds = branch.instability
-    return [
-        (i, kind)
-        for i, kind in enumerate(kinds)
-        if kind not in (None, Instability.FOLD) and (i == 0 or kinds[i - 1] is None)
-    ]

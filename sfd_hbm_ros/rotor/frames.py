@@ -12,10 +12,13 @@ p - i q, the backward one p + i q, each with half of the unknowns and of the ban
 
 from __future__ import annotations
 
+import math
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
 
+from sfd_hbm_ros.kernels import kernel
 from sfd_hbm_ros.rotor.arrays import ComplexArray, NumberArray, RealArray
 from sfd_hbm_ros.rotor.model import RotorModel
 
@@ -77,16 +80,33 @@ class Whirl:
 
     def join_matrices(self, matrices: NumberArray) -> ComplexArray:
         """See `Frame`."""
-        forward, backward = matrices[..., 0, :, :] / 2.0, matrices[..., 1, :, :] / 2.0
-        joined = np.empty((*forward.shape[:-2], *(2 * n for n in forward.shape[-2:])), complex)
-        joined[..., 0::2, 0::2] = joined[..., 1::2, 1::2] = forward + backward
-        joined[..., 0::2, 1::2] = 1j * (forward - backward)
-        joined[..., 1::2, 0::2] = -joined[..., 0::2, 1::2]
-        return joined
+        *outer, systems, n, _ = matrices.shape
+        flat = matrices.astype(complex, order="C").reshape(math.prod(outer), systems, n, n)
+        joined = _joined(flat)
+        return joined.reshape(*outer, 2 * n, 2 * n)
 
 
+@kernel("complex128[:, :, ::1](complex128[:, :, :, ::1])")
+def _joined(systems: ComplexArray) -> ComplexArray:
+    """Matrices (m, 2n, 2n) in x, y of those of forward and backward circles (m, 2, n, n)."""
+    m, _, n, _ = systems.shape
+    joined = np.empty((m, 2 * n, 2 * n), dtype=np.complex128)
+    for k in range(m):
+        for i in range(n):
+            for j in range(n):
+                forward, backward = 0.5 * systems[k, 0, i, j], 0.5 * systems[k, 1, i, j]
+                across = 1j * (forward - backward)
+                joined[k, 2 * i, 2 * j] = joined[k, 2 * i + 1, 2 * j + 1] = forward + backward
+                joined[k, 2 * i, 2 * j + 1], joined[k, 2 * i + 1, 2 * j] = across, -across
+    return joined
+
+
+@lru_cache(maxsize=8)
 def is_axisymmetric(model: RotorModel) -> bool:
-    """Tell whether every 2x2 block of a rotor's matrices is [[p, q], [-q, p]]."""
+    """Tell whether every 2x2 block of a rotor's matrices is [[p, q], [-q, p]].
+
+    The answer is kept, as the same rotor is asked about at every speed.
+    """
     return all(
         _alike(matrix[0::2, 0::2], matrix[1::2, 1::2], matrix)
         and _alike(matrix[0::2, 1::2], -matrix[1::2, 0::2], matrix)

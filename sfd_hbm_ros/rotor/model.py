@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -68,6 +69,14 @@ class RotorModel:
         """
         forces = np.stack([self.static_force, self.unbalance])
         return np.asarray(force_factors(speed, np.asarray(orders, dtype=float)) @ forces)
+
+    def load(self, speed: float, orders: RealArray) -> float:
+        """Return the norm of `linear_force` [N]; parameters are those of it."""
+        return float(np.linalg.norm(force_factors(speed, orders) * self._force_norms))
+
+    @cached_property
+    def _force_norms(self) -> RealArray:
+        return np.asarray(np.linalg.norm([self.static_force, self.unbalance], axis=1))
 
 
 def force_factors(speed: float, orders: RealArray) -> RealArray:

@@ -37,11 +37,6 @@ class Pencil:
         combined = self._terms[0] + coefficients @ self._terms[1:]
         return np.asarray(combined).reshape(len(coefficients), *self._shape)
 
-    def change(self, coefficients: RealArray) -> NumberArray:
-        """Return A - A_0 (m, ...), the derivative of A where `coefficients` are derivatives."""
-        changed = coefficients @ self._terms[1:]
-        return np.asarray(changed).reshape(len(coefficients), *self._shape)
-
 
 class BandedPencil:
     """Banded square matrices to be combined and solved.
@@ -53,8 +48,8 @@ class BandedPencil:
     """
 
     def __init__(self, terms: NumberArray) -> None:
-        self._half = max(bandwidth(np.abs(terms).sum(axis=(0, 1))))
-        self._bands = Pencil(_bands(terms, self._half))
+        self._half = half_bandwidth(terms)
+        self._bands = Pencil(bands(terms, self._half))
 
     def solve(self, coefficients: RealArray, rhs: NumberArray) -> NumberArray:
         """Solve A x = b for several sets of coefficients and all systems in one call of LAPACK.
@@ -91,7 +86,12 @@ class BandedPencil:
         return np.asarray(x).reshape(rhs.shape)
 
 
-def _bands(matrices: NumberArray, half: int) -> NumberArray:
+def half_bandwidth(matrices: NumberArray) -> int:
+    """Return the least half bandwidth that holds all matrices (..., n, n)."""
+    return int(max(bandwidth(np.abs(matrices).reshape(-1, *matrices.shape[-2:]).sum(axis=0))))
+
+
+def bands(matrices: NumberArray, half: int) -> NumberArray:
     """Return the columns (..., n, 3 half + 1) of LAPACK's band storage, with room for fill-in.
 
     Entry A[i, j] goes to [j, 2 half + i - j].

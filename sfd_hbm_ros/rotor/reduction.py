@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from scipy.linalg import eigh
 
@@ -29,8 +31,19 @@ def reduce_model(model: RotorModel, highest_frequency: float) -> RotorModel:
         The reduced rotor: coordinates of the modes, then (x, y) of every journal. Its stations
         are left out, as it has no coordinates there.
     """
-    basis = _basis(model, highest_frequency)
-    modes = basis.shape[1] - model.journals.size
+    ceiling = 2.0 ** np.ceil(np.log2(highest_frequency))
+    frequencies, _ = _basis(model, ceiling)
+    return _reduced(model, ceiling, int(np.count_nonzero(frequencies <= highest_frequency)))
+
+
+@lru_cache(maxsize=16)
+def _reduced(model: RotorModel, ceiling: float, modes: int) -> RotorModel:
+    """Reduce a rotor to the first of the modes up to a frequency.
+
+    It is kept: along a branch the same modes are wanted again and again.
+    """
+    frequencies, whole = _basis(model, ceiling)
+    basis = np.delete(whole, np.s_[modes : len(frequencies)], axis=1)
     return RotorModel(
         M=basis.T @ model.M @ basis,
         C=basis.T @ model.C @ basis,
@@ -61,26 +74,32 @@ def hold_journals(model: RotorModel) -> RotorModel:
     )
 
 
-def _basis(model: RotorModel, highest_frequency: float) -> RealArray:
+@lru_cache(maxsize=8)
+def _basis(model: RotorModel, highest_frequency: float) -> tuple[RealArray, RealArray]:
     """Modes with the journals held, then the static deflection by each journal's unit motion.
 
     Those of an axisymmetric rotor are of one plane and come in pairs, x and y, so that the
     reduced rotor is axisymmetric in the same way.
+
+    Returns
+    -------
+    The modes' frequencies (m,) [rad/s], and all columns (N, m + n).
     """
     n, journals = model.shaft_size, model.journals.size
     if is_axisymmetric(model):
-        planar = _modes(model.K[:n:2, :n:2], model.M[:n:2, :n:2], highest_frequency)
-        modes = np.kron(planar, np.eye(2))
+        planar, modes = _modes(model.K[:n:2, :n:2], model.M[:n:2, :n:2], highest_frequency)
+        frequencies, modes = np.repeat(planar, 2), np.kron(modes, np.eye(2)).astype(float)
     else:
-        modes = _modes(model.K[:n, :n], model.M[:n, :n], highest_frequency)
+        frequencies, modes = _modes(model.K[:n, :n], model.M[:n, :n], highest_frequency)
     deflections = -np.linalg.solve(model.K[:n, :n], model.K[:n, n:])
-    return np.block(
-        [[modes, deflections], [np.zeros((journals, modes.shape[1])), np.eye(journals)]]
-    )
+    fixed = np.zeros((journals, modes.shape[1]))
+    return frequencies, np.block([[modes, deflections], [fixed, np.eye(journals)]])
 
 
-def _modes(stiffness: RealArray, mass: RealArray, highest_frequency: float) -> RealArray:
-    """Columns of the modes up to a frequency; what is skew in a bearing does not shape them."""
+def _modes(
+    stiffness: RealArray, mass: RealArray, highest_frequency: float
+) -> tuple[RealArray, RealArray]:
+    """Frequencies and columns of the modes; what is skew in a bearing does not shape them."""
     symmetric = 0.5 * (stiffness + stiffness.T)
-    _, modes = eigh(symmetric, mass, subset_by_value=(-np.inf, highest_frequency**2))
-    return np.asarray(modes)
+    squares, modes = eigh(symmetric, mass, subset_by_value=(-np.inf, highest_frequency**2))
+    return np.sqrt(np.maximum(squares, 0.0)), np.asarray(modes)

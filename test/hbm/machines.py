@@ -80,3 +80,38 @@ def random_machine(
         loads=(Load("disk_1", (30.0, -50.0)),) if gravity else (),
         gravity=gravity,
     )
+
+
+def misaligned_rotor():
+    """A stiff rotor on a light damper, off centre by 0.4 of its clearance under a side load.
+
+    Its unbalance is large. At about three to four times its critical speed of 2800 rpm only a
+    response is stable that repeats after two revolutions, as Zhao, Linnett and McLean 1994,
+    J. Vibration and Acoustics 116, 357, found for rigid rotors above twice their critical speed.
+    """
+    return Machine(
+        name="stiff rotor on a misaligned damper",
+        materials=(STEEL,),
+        shaft=(ShaftSegment(2, 0.15, 0.04, 0.0, STEEL),),
+        disks=(Disk("disk", 1, 4.0, 9e-3, 5e-3),),
+        bearings=(Bearing("bearing", 0, isotropic(1e8), isotropic(0.0)),),
+        dampers=(
+            Damper(
+                name="damper",
+                node=2,
+                bearing_stiffness=1e8,
+                bearing_damping=0.0,
+                journal_mass=1.0,
+                centering_stiffness=2.6e5,
+                diameter=0.0762,
+                length=0.0127,
+                clearance=2.54e-4,
+                viscosity=0.02,
+                density=865.0,
+                film=FilmSettings(inertia=False),
+            ),
+        ),
+        unbalance=(Unbalance("disk", 5.7e-4, 0.0),),
+        loads=(Load("disk", (0.0, -53.0)),),
+        gravity=False,
+    )

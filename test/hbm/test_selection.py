@@ -7,7 +7,7 @@ import pytest
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.hbm.newton import newton
-from sfd_hbm_ros.hbm.selected_branch import selected_branch
+from sfd_hbm_ros.hbm.selected_branch import SelectedBranch
 from sfd_hbm_ros.hbm.selection import SelectedBalance
 from sfd_hbm_ros.machine import override_all
 
@@ -21,7 +21,7 @@ SOFT = {"gravity": True, "dampers.damper_1.centering_stiffness": 2.627e5}
 @pytest.mark.parametrize("changes", [{"gravity": True}, SOFT], ids=["stiff", "soft"])
 def test_branch_lies_within_the_tolerance_of_the_full_one(changes, tolerance):
     balance = SelectedBalance(override_all(PAPER, changes), Harmonics(9), tolerance)
-    points = list(selected_branch(balance, 2000 * RPM, 6000 * RPM))
+    points = list(SelectedBranch(balance, 2000 * RPM, 6000 * RPM).selected())
     assert points[-1].point.value == 6000 * RPM
     assert max(len(at.group) for at in points) > 2
     for at in points[::5]:
@@ -38,7 +38,7 @@ def test_group_grows_with_the_tolerance_and_does_not_flicker():
     groups = {}
     for tolerance in (1e-2, 1e-4):
         balance = SelectedBalance(machine, Harmonics(9), tolerance)
-        points = list(selected_branch(balance, 2000 * RPM, 6000 * RPM))
+        points = list(SelectedBranch(balance, 2000 * RPM, 6000 * RPM).selected())
         groups[tolerance] = [at.group for at in points]
         changes = sum(a.group != b.group for a, b in itertools.pairwise(points))
         assert changes <= 8
@@ -46,8 +46,8 @@ def test_group_grows_with_the_tolerance_and_does_not_flicker():
 
 
 def test_circular_orbit_needs_the_order_of_the_speed_alone():
-    balance = SelectedBalance(PAPER, Harmonics(7))
-    assert {at.group for at in selected_branch(balance, 3900 * RPM, 4000 * RPM)} == {(0, 1)}
+    branch = SelectedBranch(SelectedBalance(PAPER, Harmonics(7)), 3900 * RPM, 4000 * RPM)
+    assert {at.group for at in branch.selected()} == {(0, 1)}
 
 
 @pytest.mark.parametrize("revolutions", [2, 3])

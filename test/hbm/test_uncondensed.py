@@ -13,12 +13,12 @@ def uncondensed_residual(balance, solution):
     """Norm of the imbalance over every coordinate and order, relative to that of the load."""
     model, harmonics, w = balance.model, solution.harmonics, solution.speed
     q = balance.response(solution)
-    orders = np.arange(harmonics.highest + 1)
-    angle = 2.0 * np.pi * np.arange(harmonics.samples) / harmonics.samples
+    orders = np.arange(harmonics.highest * harmonics.revolutions + 1) / harmonics.revolutions
+    angle = harmonics.revolutions * 2.0 * np.pi * np.arange(harmonics.samples) / harmonics.samples
     turning = np.exp(1j * np.multiply.outer(angle, orders))
     load = np.zeros_like(q)
     load[0] = model.static_force
-    load[1] = w**2 * model.unbalance
+    load[harmonics.revolutions] = w**2 * model.unbalance
     film = np.zeros_like(q)
     for (x, y), model_of_film in zip(model.journals, balance.films, strict=True):
         motion = [
@@ -29,8 +29,8 @@ def uncondensed_residual(balance, solution):
         film[:, [x, y]] = 2.0 * spectrum[: len(orders)]
         film[0, [x, y]] /= 2.0
     imbalance = [
-        (model.K - (m * w) ** 2 * model.M + 1j * m * w * (model.C + w * model.G)) @ q[m]
-        for m in orders
+        (model.K - (m * w) ** 2 * model.M + 1j * m * w * (model.C + w * model.G)) @ amplitudes
+        for m, amplitudes in zip(orders, q, strict=True)
     ] - (load + film)
     return np.linalg.norm(imbalance) / np.linalg.norm(load)
 

@@ -55,6 +55,7 @@ def made(values, motions, instability=None, fold=None):
         for value, one in zip(values, motions, strict=True)
     )
     branch = CurveBranch(
+        SpeedFamily(balance),
         np.array(values),
         solutions,
         instability or (None,) * len(values),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
+from sfd_hbm_ros.hbm import Instability
 from sfd_hbm_ros.report.curves import draw_response, draw_study
 from sfd_hbm_ros.report.style import new_figure
 from sfd_hbm_ros.response.jumps import Direction, Jump, jumps
@@ -63,11 +64,17 @@ def test_marks(axes):
     [fold] = np.flatnonzero(second.fold)
     [mark] = reading.marks(axes, "o")
     assert mark == pytest.approx([second.speed[fold] / RPM, second.eccentricity(DAMPER)[fold]])
-    # stability is lost between the marked point and the next
     [mark] = reading.marks(axes, "s")
-    last = np.flatnonzero(first.stable)[-1]
-    assert mark == pytest.approx([first.speed[last] / RPM, first.eccentricity(DAMPER)[last]])
+    lost = np.flatnonzero(first.stable)[-1] + 1
+    assert mark == pytest.approx([first.speed[lost] / RPM, first.eccentricity(DAMPER)[lost]])
     assert reading.legend(axes) == ["unstable", "fold", "Neimark-Sacker"]
+
+
+@pytest.mark.parametrize("kind", [kind for kind in Instability if kind is not Instability.FOLD])
+def test_every_loss_of_stability_has_its_mark(axes, kind):
+    still = [motion(np.ones((3, 2)))] * 3
+    draw_response(axes, made([100.0, 200.0, 300.0], still, (None, kind, kind)), DAMPER)
+    assert reading.legend(axes) == ["unstable", kind.value]
 
 
 def test_jumps(axes):

@@ -1,6 +1,7 @@
 """Tables of curves, read back from their files."""
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -71,3 +72,13 @@ def test_sub_harmonics_are_named_by_their_order(tmp_path):
     [row] = read(tmp_path / "curve.csv")
     assert float(row[f"{DAMPER}.y_1/2_sin"]) == 5.0
     assert float(row[f"{DAMPER}.y_1_sin"]) == 9.0
+
+
+def test_columns_hold_the_orders_of_every_branch(tmp_path):
+    whole = made([100.0], [motion(np.arange(6.0).reshape(3, 2))])
+    half = made([200.0], [motion(np.arange(10.0).reshape(5, 2), highest=1, revolutions=2)])
+    write_table(replace(whole, branches=(*whole.branches, *half.branches)), tmp_path / "curve.csv")
+    first, second = read(tmp_path / "curve.csv")
+    waves = ("0", "1/2_cos", "1/2_sin", "1_cos", "1_sin")
+    x = [[float(row[f"{DAMPER}.x_{wave}"]) for wave in waves] for row in (first, second)]
+    assert x == [[0.0, 0.0, 0.0, 2.0, 4.0], [0.0, 2.0, 4.0, 6.0, 8.0]]

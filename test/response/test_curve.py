@@ -124,7 +124,7 @@ def test_detached_branches_complete_the_closed_form(machine, lowest, highest):
         found = sorted(
             solution.eccentricity_max
             for branch in (*curve.branches, *detached)
-            for _, solution in solutions_at(curve.family, branch, speed)
+            for _, solution in solutions_at(branch, speed)
         )
         assert [e for e in found if e < 0.99] == pytest.approx(expected, abs=1e-7)
 

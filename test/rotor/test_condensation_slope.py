@@ -1,4 +1,4 @@
-"""The condensed rotor's derivative by the speed against sixth-order differences."""
+"""The condensed rotor's derivatives by speed and order against sixth-order differences."""
 
 import dataclasses
 
@@ -49,3 +49,18 @@ def test_slope_equals_differences(machine, speed):
     ]
     # near a pole only short steps resolve an order, elsewhere the long ones round less
     assert np.max(np.min(errors, axis=0)) < 1e-7
+
+
+@pytest.mark.parametrize("machine", [PAPER, random_machine(3, dampers=2)], ids=["one", "two"])
+def test_slope_by_order_equals_differences(machine):
+    """At orders of both signs, away from the poles."""
+    condensation = Condensation(assemble(machine))
+    orders, step = np.array([-2.3, -0.9, 0.4, 1.0, 2.6]), 5e-4
+    difference = sum(
+        side * weight * condensation.at(400.0, orders + side * multiple * step).stiffness
+        for multiple, weight in STENCIL
+        for side in (1, -1)
+    )
+    slope = condensation.slope_by_order(400.0, orders)
+    errors = np.linalg.norm(difference / step - slope, axis=(1, 2))
+    assert np.all(errors < 1e-7 * np.linalg.norm(slope, axis=(1, 2)))

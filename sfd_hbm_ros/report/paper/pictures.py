@@ -58,7 +58,7 @@ def _response(study: Study, figure: Figure) -> Picture:
 def _with_detached(study: Study, name: str) -> ResponseCurve:
     """The response curve of a case with its detached branches, for a picture alone."""
     curve = study.curve(name)
-    return replace(curve, branches=(*curve.branches, *study.computed[name].detached))
+    return replace(curve, detached=study.computed[name].detached)
 
 
 def _orbits(study: Study, figure: Figure) -> Picture:

@@ -1,0 +1,118 @@
+"""Small disturbances of a response over one period of it: y' = A y with periodic A.
+
+Their solution is a product of matrix exponentials (Magnus series of fourth order, Blanes et al.
+2009, Phys. Rep. 470, 151), exact where A is constant.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from sfd_hbm_ros.rotor import RotorModel
+
+Array = NDArray[np.float64]
+
+_STIFF = 10.0  # norm of the Magnus series' second term beyond which the series is of no use
+_LOBATTO = np.array([[2.0, -4.0, 2.0], [2.0, 5.0, -1.0], [2.0, 8.0, 2.0]]) / 12.0
+
+
+class FilmSlopes(NamedTuple):
+    """Derivatives of a film's force by position, velocity and acceleration, (n, 2, 2) each."""
+
+    by_position: Array
+    by_velocity: Array
+    by_acceleration: Array
+
+
+def rates(
+    rotor: RotorModel,
+    films: Sequence[FilmSlopes],
+    speed: float,
+    frequency: float,
+    turning: float = 0.0,
+) -> Array:
+    """Matrices A of y' = A y over a period, y = (q, dq/dangle), the angle being frequency * time.
+
+    Parameters
+    ----------
+    rotor : RotorModel
+        The rotor, of m coordinates.
+    films : sequence of FilmSlopes
+        Those of each damper at n samples of the period; in a turning frame, as it sees them.
+    speed : float
+        Rotor speed [rad/s].
+    frequency : float
+        Frequency of the response [rad/s].
+    turning : float
+        Speed at which the frame of q turns [rad/s].
+
+    Returns
+    -------
+    (n + 1, 2m, 2m) array, the last matrix being the first.
+    """
+    w, m, samples = frequency, rotor.size, len(films[0].by_position)
+    mass, damping, stiffness = (
+        np.repeat(matrix[np.newaxis], samples, axis=0)
+        for matrix in (w * w * rotor.M, w * (rotor.C + speed * rotor.G), rotor.K)
+    )
+    for (x, y), film in zip(rotor.journals, films, strict=True):
+        corner = (slice(None), slice(x, y + 1), slice(x, y + 1))
+        mass[corner] -= w * w * film.by_acceleration
+        damping[corner] -= w * film.by_velocity
+        stiffness[corner] -= film.by_position
+    if turning:  # q = R p: q' = R (p' + r J p), q'' = R (p'' + 2 r J p' - r^2 p)
+        ratio = turning / frequency
+        quarter = np.kron(np.eye(m // 2), [[0.0, -1.0], [1.0, 0.0]])
+        stiffness += ratio * damping @ quarter - ratio**2 * mass
+        damping += 2.0 * ratio * mass @ quarter
+    matrices = np.zeros((samples + 1, 2 * m, 2 * m))
+    matrices[:, :m, m:] = np.eye(m)
+    matrices[:-1, m:] = -np.linalg.solve(mass, np.concatenate([stiffness, damping], axis=2))
+    matrices[-1] = matrices[0]
+    return matrices
+
+
+def monodromy(rates: Array, period: float) -> Array:
+    """Map of a disturbance y over one period, (2m, 2m).
+
+    Parameters
+    ----------
+    rates : (2 steps + 1, 2m, 2m) array
+        Matrices A at the beginning, in the middle and at the end of each step.
+    period : float
+        The period, an angle [rad].
+    """
+    first, middle, last = rates[:-1:2], rates[1::2], rates[2::2]
+    h = period / len(first)
+    commutators = h * h / 12.0 * (first @ last - last @ first)
+    if np.linalg.norm(commutators, axis=(1, 2)).max() > _STIFF:
+        parts = _lobatto_steps(h, np.stack([first, middle, last], axis=1))
+    else:
+        parts = expm(h / 6.0 * (first + 4.0 * middle + last) - commutators)
+    product = np.eye(rates.shape[1])
+    for step in parts:
+        product = step @ product
+    return product
+
+
+def _lobatto_steps(h: float, rates: Array) -> Array:
+    """Maps over steps of length h by Lobatto IIIC with three stages, (steps, 2m, 2m).
+
+    It is of fourth order too, and L-stable (Hairer and Wanner 1996, Solving ODEs II, IV.5).
+
+    Parameters
+    ----------
+    h : float
+        Length of a step [rad].
+    rates : (steps, 3, 2m, 2m) array
+        Matrices A at the beginning, the middle and the end of each.
+    """
+    steps, stages, size, _ = rates.shape
+    blocks = h * np.einsum("ij,sjkl->sikjl", _LOBATTO, rates)
+    matrix = np.eye(stages * size) - blocks.reshape(steps, stages * size, stages * size)
+    start = np.tile(np.eye(size), (steps, stages, 1))
+    maps: Array = np.linalg.solve(matrix, start)[:, -size:]
+    return maps
