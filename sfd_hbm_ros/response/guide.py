@@ -1,0 +1,130 @@
+"""A response curve as the guide of one machine: where to look for its solutions."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, NewtonOptions, Solution
+from sfd_hbm_ros.hbm.newton import newton
+from sfd_hbm_ros.hbm.solve import solution_at
+from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.following import NEAR, balanced
+from sfd_hbm_ros.response.journey import Journey, first_place, travel
+from sfd_hbm_ros.response.place import Place, places_at
+
+_ALIKE = 0.2  # distance from an outdated curve, in clearances, within which it still guides
+_ROUNDING = 1e-9  # of two distances, in clearances
+_NEWTON = NewtonOptions(iterations=8)  # a start off the curve is near
+
+
+@dataclass(frozen=True, eq=False)
+class Guide:
+    """A machine and the curve that guides it, if any.
+
+    Attributes
+    ----------
+    balance : HarmonicBalance
+        The machine with its present parameters and loads.
+    curve : ResponseCurve or None
+        A curve over the speed, of this machine or of what it was before.
+    """
+
+    balance: HarmonicBalance
+    curve: ResponseCurve | None = None
+
+    @cached_property
+    def current(self) -> bool:
+        """Whether the curve is that of the present machine."""
+        return self.curve is not None and (
+            self.curve.balance.machine == self.balance.machine
+            and self.curve.balance.harmonics == self.balance.harmonics
+        )
+
+    def balance_for(self, harmonics: Harmonics) -> HarmonicBalance:
+        """The machine with the harmonics of a branch that may be sub-harmonic."""
+        if harmonics not in self._balances:
+            other = HarmonicBalance(self.balance.machine, harmonics, self.balance.model)
+            self._balances[harmonics] = other
+        return self._balances[harmonics]
+
+    def places(self, speed: float) -> list[Place]:
+        """All places of the curve at a speed [rad/s]."""
+        return places_at(self.curve.branches, speed) if self.curve else []
+
+    def others(self, speed: float, place: Place | None, eccentricity: float) -> list[Place]:
+        """Stable places but one at a speed [rad/s], the nearest to an eccentricity first."""
+        others = [
+            other
+            for other in self.places(speed)
+            if other.stable and not (place and other.is_at(place))
+        ]
+        return sorted(others, key=lambda other: abs(other.eccentricity - eccentricity))
+
+    def run_up(self, speed: float) -> Journey:
+        """The journey of a run-up from the beginning of the current curve to a speed [rad/s]."""
+        if self.curve is None or not self.current:
+            return Journey(None, 0)
+        return travel(self.curve, first_place(self.curve.branches), speed)
+
+    def journey(self, place: Place, speed: float) -> Journey:
+        """The journey along the current curve from a place to another speed [rad/s]."""
+        if self.curve is None or not self.current:
+            return Journey(None, 0)
+        return travel(self.curve, place, speed)
+
+    def solved(
+        self, place: Place, beside: Place | None = None, known: Solution | None = None
+    ) -> Solution | None:
+        """The machine's response at a place of the curve, if Newton's method leads there.
+
+        Parameters
+        ----------
+        place : Place
+            The place.
+        beside : Place, optional
+            Another, at which the response is known. Between the same two points of the curve its
+            distance from the curve tells that of the response sought.
+        known : Solution, optional
+            The response there.
+        """
+        balance = self.balance_for(place.harmonics)
+        x = place.coefficients
+        if known and beside and place.is_at(beside):
+            x = x + known.coefficients - beside.coefficients
+        equations = balance.at(place.value)
+        result = newton(equations, x.ravel(), _NEWTON)
+        if not balanced(equations, result):
+            return None
+        solution = solution_at(balance, place.value, result.x)
+        nearest = min(other.distance(solution) for other in self.places(place.value))
+        near = place.distance(solution) < min(self._limit, nearest + _ROUNDING)
+        return solution if near else None
+
+    def landings(self, left: Solution, speed: float) -> Iterator[Solution]:
+        """Responses near the curve's stable places at a speed [rad/s], the likelier first.
+
+        Parameters
+        ----------
+        left : Solution
+            The response that a machine left.
+        speed : float
+            Rotor speed [rad/s].
+        """
+        for place in self.others(speed, None, left.eccentricity_max):
+            solution = self.solved(place)
+            if solution:
+                yield solution
+
+    def match(self, solution: Solution) -> Place | None:
+        """The stable place of a response on the curve, if it lies there."""
+        places = [place for place in self.places(solution.speed) if place.tenable]
+        place = min(places, key=lambda place: place.distance(solution), default=None)
+        return place if place and place.distance(solution) < self._limit else None
+
+    @property
+    def _limit(self) -> float:
+        return NEAR if self.current else _ALIKE
+
+    @cached_property
+    def _balances(self) -> dict[Harmonics, HarmonicBalance]:
+        return {self.balance.harmonics: self.balance}

@@ -1,0 +1,116 @@
+"""The way of a machine along its response curve, with the jumps on it, and no solve."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from sfd_hbm_ros.hbm.points import Stop
+from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.judged import CurveBranch
+from sfd_hbm_ros.response.jumps import SAME
+from sfd_hbm_ros.response.place import Place, place_on, places_at
+
+_MOST_JUMPS = 20  # of one journey, so that a curve with an odd end cannot make it endless
+
+
+class Journey(NamedTuple):
+    """Where a journey along a curve ends.
+
+    Attributes
+    ----------
+    place : Place or None
+        The place; None where the journey leaves the curve's range, or the curve shows no other
+        stable response where a branch ends.
+    jumps : int
+        Jumps on the way.
+    """
+
+    place: Place | None
+    jumps: int
+
+
+def first_place(branches: Sequence[CurveBranch]) -> Place:
+    """Where a run-up through the whole range begins, a stable place if there is any."""
+    ends = [
+        Place(branch, index, float(branch.values[point]))
+        for branch in branches
+        for index, point in ((0, 0), (len(branch.values) - 2, -1))
+    ]
+    return min(ends, key=lambda end: (end.value, not end.stable))
+
+
+def travel(curve: ResponseCurve, place: Place, value: float) -> Journey:
+    """Let the parameter go steadily from a place to another value, as it goes in a machine.
+
+    The machine stays on its branch until that turns back, or ends within the range because the
+    journal closes on its clearance; there it jumps to the other stable response that is nearest
+    in eccentricity. Where its branch loses stability to one that leaves it, the machine moves
+    onto that one if it is stable and leads onward; otherwise it jumps there too.
+    """
+    lowest = min(float(branch.values.min()) for branch in curve.branches)
+    highest = max(float(branch.values.max()) for branch in curve.branches)
+    for jumps in range(_MOST_JUMPS):
+        place, arrived = _along(curve, place, value)
+        if arrived:
+            return Journey(place, jumps)
+        if not lowest < place.value < highest:
+            break
+        landing = landings(curve.branches, place)
+        if not landing:
+            break
+        place = landing[0]
+    return Journey(None, jumps)
+
+
+def landings(branches: Sequence[CurveBranch], left: Place) -> list[Place]:
+    """Other stable places at the value of a branch's point, the nearest in eccentricity first."""
+    others = [
+        place
+        for place in places_at(branches, left.value)
+        if place.stable
+        and not (place.branch is left.branch and abs(place.index - left.index) <= 1)
+        and place.distance(left.nearest) > SAME  # where branches meet they are one response
+    ]
+    return sorted(others, key=lambda place: abs(place.eccentricity - left.eccentricity))
+
+
+def _along(curve: ResponseCurve, place: Place, value: float) -> tuple[Place, bool]:
+    """The place of a value that is reached without a jump, or else where the jump happens.
+
+    Returns
+    -------
+    The place, and whether it is that of the value.
+    """
+    sign = 1.0 if value > place.value else -1.0
+    branch, index = place.branch, place.index
+    while True:
+        ends = branch.values[index : index + 2].tolist()
+        if min(ends) <= value <= max(ends):
+            return place_on(branch, index, value), True
+        ahead = bool(sign * (ends[1] - ends[0]) > 0.0)
+        onward = _onward(curve, branch, index, ahead, sign)
+        if onward is None:
+            return Place(branch, index, ends[1] if ahead else ends[0]), False
+        branch, index = onward
+
+
+def _onward(
+    curve: ResponseCurve, branch: CurveBranch, index: int, ahead: bool, sign: float
+) -> tuple[CurveBranch, int] | None:
+    """The next stretch between two points: where branches meet, a stable one."""
+    point = index + ahead
+    meeting = curve.meeting(branch, point)
+    ways = [(branch, index + (1 if ahead else -1))]
+    for other, at in meeting:
+        ways += [(other, at), (other, at - 1)]
+    value = float(branch.values[point])
+    for way, at in ways:
+        stretches = len(way.values) - 1
+        if way.stop is Stop.CLOSED:
+            at %= stretches
+        if not 0 <= at < stretches:
+            continue
+        ends = way.values[at : at + 2].tolist()
+        leads = sign * (sum(ends) - 2.0 * value) >= 0.0
+        if leads and (not meeting or Place(way, at, value).stable):
+            return way, at
+    return None

@@ -1,0 +1,123 @@
+"""Places on the branches of a response curve, read off its arrays without a solve."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sfd_hbm_ros.hbm import Harmonics, Instability, Solution
+from sfd_hbm_ros.response.judged import CurveBranch
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A place on a branch, at or between two neighbouring points.
+
+    Attributes
+    ----------
+    branch : CurveBranch
+        The branch.
+    index : int
+        The point before the place in the order of the arc; the next is `index` + 1. A point of the
+        branch is the end of the way to it, but a fold has a place on either side.
+    value : float
+        The parameter: for a speed [rad/s].
+    """
+
+    branch: CurveBranch
+    index: int
+    value: float
+
+    @cached_property
+    def part(self) -> float:
+        """Part of the way from the point before to the next, from 0 to 1.
+
+        Beside a fold the response goes with the root of the distance in the parameter.
+        """
+        first, last = self.branch.values[self.index : self.index + 2].tolist()
+        part = float(min(max((self.value - first) / (last - first), 0.0), 1.0))
+        leaves, meets = self.branch.fold[self.index : self.index + 2].tolist()
+        if leaves == meets:
+            return part
+        return float(np.sqrt(part) if leaves else 1.0 - np.sqrt(1.0 - part))
+
+    @property
+    def harmonics(self) -> Harmonics:
+        """Harmonics of the branch."""
+        return self.branch.solutions[self.index].harmonics
+
+    @cached_property
+    def coefficients(self) -> Array:
+        """Coefficients about there [m], (rows, n), from which Newton's method can start."""
+        here, there = (one.coefficients for one in self._neighbours)
+        coefficients: Array = here + self.part * (there - here)
+        return coefficients
+
+    @property
+    def eccentricity(self) -> float:
+        """Greatest eccentricity of any damper about there."""
+        here, there = self.branch.worst_eccentricity[self.index : self.index + 2].tolist()
+        return float(here + self.part * (there - here))
+
+    @property
+    def stable(self) -> bool:
+        """Whether the response is stable there.
+
+        Folds and other points at which that changes count as unstable, so that one stable
+        neighbour is enough.
+        """
+        return None in self.branch.instability[self.index : self.index + 2]
+
+    @property
+    def tenable(self) -> bool:
+        """Whether a machine can be there: where it is unstable, it must not be as at a fold."""
+        kinds = self.branch.instability[self.index : self.index + 2]
+        return any(kind is not Instability.FOLD for kind in kinds)
+
+    @property
+    def nearest(self) -> Solution:
+        """The response at the nearer of both points."""
+        return self._neighbours[round(self.part)]
+
+    def is_at(self, other: "Place") -> bool:
+        """Whether this is another place's stretch between two points."""
+        return self.branch is other.branch and self.index == other.index
+
+    def distance(self, solution: Solution) -> float:
+        """Greatest difference of any coefficient from a solution's, in clearances."""
+        ours, theirs = self.harmonics, solution.harmonics
+        if ours == theirs:
+            difference = self.coefficients - solution.coefficients
+        else:
+            both = max(ours, theirs, key=lambda harmonics: harmonics.revolutions)
+            difference = both.change_from(ours, self.coefficients)
+            difference = difference - both.change_from(theirs, solution.coefficients)
+        clearances = np.repeat([one.clearance for one in solution.journals.values()], 2)
+        return float(np.abs(difference / clearances).max())
+
+    @property
+    def _neighbours(self) -> tuple[Solution, ...]:
+        return self.branch.solutions[self.index : self.index + 2]
+
+
+def place_on(branch: CurveBranch, index: int, value: float) -> Place:
+    """The place of a value of the parameter after one point, or that point's own place."""
+    if index > 0 and value == branch.values[index] and not branch.fold[index]:
+        index -= 1
+    return Place(branch, index, value)
+
+
+def places_at(branches: Sequence[CurveBranch], value: float) -> list[Place]:
+    """All places of a value of the parameter, each once."""
+    found: list[Place] = []
+    for branch in branches:
+        before, after = branch.values[:-1] - value, branch.values[1:] - value
+        for index in np.flatnonzero((before * after <= 0.0) & (before != after)).tolist():
+            place = place_on(branch, index, value)
+            if not (found and place.is_at(found[-1])):
+                found.append(place)
+    return found
