@@ -1,4 +1,4 @@
-"""All messages of the nodes, built and read in this one file.
+"""The messages of the nodes, built and read in this file and its neighbours *_messages.
 
 JointState is used because it is the stamped, named list of doubles that PlotJuggler, Foxglove and
 rosbag2 read without a package of our own; a typed interface package can replace it here.
@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import WrenchStamped
 from rclpy.time import Time
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import JointState, Temperature
 from std_msgs.msg import Header
 
 from sfd_hbm_ros.hbm import JournalMotion
@@ -23,6 +23,7 @@ Journals = Mapping[str, JournalMotion]
 Named = Iterator[tuple[str, float]]
 
 _SECOND = 1_000_000_000
+_ABSOLUTE_ZERO = -273.15  # deg C
 
 
 def read_stamp(header: Header) -> int:
@@ -63,16 +64,37 @@ def read_load(message: WrenchStamped) -> tuple[str, tuple[float, float]]:
     return message.header.frame_id, (force.x, force.y)
 
 
+def read_temperature(message: Temperature) -> float:
+    """Return a temperature [deg C].
+
+    Raises
+    ------
+    InputError
+        If it is not finite or below absolute zero.
+    """
+    celsius = float(message.temperature)
+    if not _ABSOLUTE_ZERO <= celsius < math.inf:
+        raise InputError(
+            f"temperature must be a finite number [deg C] of at least {_ABSOLUTE_ZERO}, "
+            f"not {celsius}"
+        )
+    return celsius
+
+
 def speed_message(stamp: Time, speed: float, angle: float) -> JointState:
     """Return the message of a rotor speed [rad/s] and a keyphasor angle [rad]."""
     header = Header(stamp=stamp.to_msg())
     return JointState(header=header, name=["rotor"], position=[angle], velocity=[speed])
 
 
-def eccentricity_message(stamp: Time, frame: str, journals: Journals) -> JointState:
-    """Return the eccentricities of all journals, of their clearances."""
-    named = (pair for name, motion in journals.items() for pair in _eccentricities(name, motion))
-    return _positions(stamp, frame, named)
+def eccentricity_message(
+    stamp: Time, frame: str, journals: Journals, others: Journals
+) -> JointState:
+    """Return the eccentricities of all journals, of their clearances.
+
+    `others` are those on the other stable branch, empty where there is none.
+    """
+    return _positions(stamp, frame, eccentricities(journals, others))
 
 
 def harmonics_message(stamp: Time, frame: str, journals: Journals) -> JointState:
@@ -115,23 +137,30 @@ def _positions(stamp: Time, frame: str, named: Named) -> JointState:
     return JointState(header=header, name=names, position=values)
 
 
-def _eccentricities(damper: str, motion: JournalMotion) -> Named:
-    """Yield the eccentricities of one journal with their names."""
-    static_x, static_y = motion.coefficients[0] / motion.clearance
-    yield f"{damper}/max", motion.eccentricity_max
-    yield f"{damper}/mean", motion.eccentricity_mean
-    yield f"{damper}/static_x", float(static_x)
-    yield f"{damper}/static_y", float(static_y)
+def eccentricities(journals: Journals, others: Journals) -> Named:
+    """Yield the eccentricities of all journals with their names.
+
+    Those on the other stable branch are NaN where there is none.
+    """
+    for damper, motion in journals.items():
+        static_x, static_y = motion.coefficients[0] / motion.clearance
+        yield f"{damper}/max", motion.eccentricity_max
+        yield f"{damper}/mean", motion.eccentricity_mean
+        yield f"{damper}/static_x", float(static_x)
+        yield f"{damper}/static_y", float(static_y)
+        other = others[damper].eccentricity_max if damper in others else math.nan
+        yield f"{damper}/other_branch/max", other
 
 
 def _harmonics(damper: str, motion: JournalMotion) -> Named:
-    """Yield the harmonics of one journal with their names."""
+    """Yield the harmonics of one journal with their names; sub-harmonics as 0.5x."""
+    orders = motion.harmonics.orders[1:].tolist()
     for axis, cos, sin in zip("xy", motion.cos.T.tolist(), motion.sin.T.tolist(), strict=True):
         yield f"{damper}/{axis}/0x", cos[0]
-        for order in range(1, len(cos)):
-            harmonic = f"{damper}/{axis}/{order}x"
-            yield f"{harmonic}/amplitude", math.hypot(cos[order], sin[order])
-            yield f"{harmonic}/phase", math.atan2(sin[order], cos[order])
+        for order, c, s in zip(orders, cos[1:], sin[1:], strict=True):
+            harmonic = f"{damper}/{axis}/{order:g}x"
+            yield f"{harmonic}/amplitude", math.hypot(c, s)
+            yield f"{harmonic}/phase", math.atan2(s, c)
 
 
 def read_eccentricities(message: JointState) -> dict[str, tuple[float, float]]:
@@ -143,7 +172,7 @@ def read_eccentricities(message: JointState) -> dict[str, tuple[float, float]]:
         If names and numbers do not pair.
     """
     greatest, mean = {}, {}
-    for name, value in _named(message):
+    for name, value in named(message):
         match name.split("/"):
             case [damper, "max"]:
                 greatest[damper] = value
@@ -161,7 +190,7 @@ def read_x_amplitudes(message: JointState) -> dict[str, list[float]]:
         If names and numbers do not pair.
     """
     amplitudes: dict[str, list[float]] = {}
-    for name, value in _named(message):
+    for name, value in named(message):
         match name.split("/"):
             case [damper, "x", _, "amplitude"]:
                 amplitudes.setdefault(damper, []).append(value)
@@ -175,8 +204,14 @@ def read_diagnostics(message: DiagnosticArray, node: str) -> Iterator[tuple[str,
             yield status.name, status.level[0], status.message
 
 
-def _named(message: JointState) -> Named:
-    """Yield the named positions of a message."""
+def named(message: JointState) -> Named:
+    """Yield the named positions of a message.
+
+    Raises
+    ------
+    InputError
+        If names and numbers do not pair.
+    """
     if len(message.name) != len(message.position):
         raise InputError(
             f"position must hold a number for each of the {len(message.name)} names, "

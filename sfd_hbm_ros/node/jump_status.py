@@ -1,0 +1,65 @@
+"""The warning of a jump as a status: a level, a sentence and what programs want to read."""
+
+from __future__ import annotations
+
+import math
+
+from sfd_hbm_ros.node.diagnostics import Level, Status
+from sfd_hbm_ros.response.advice import advice
+from sfd_hbm_ros.response.jump_alarm import JumpAlarm
+from sfd_hbm_ros.response.outlook import Outlook
+from sfd_hbm_ros.response.tracked import BranchName
+
+_RPM = math.pi / 30.0  # rad/s
+
+
+def jump_status(
+    alarm: JumpAlarm,
+    outlook: Outlook,
+    branch: BranchName,
+    eccentricity: float,
+    model_age: float,
+    now: float,
+) -> Status:
+    """Return the warning; +inf stands for none ahead, NaN for not computable (REP 117).
+
+    Parameters
+    ----------
+    alarm : JumpAlarm
+        The alarm, which has taken the outlook and the eccentricity.
+    outlook : Outlook
+        What lies ahead.
+    branch : BranchName
+        The branch that the machine is on.
+    eccentricity : float
+        Greatest eccentricity of any damper at present; NaN if unknown.
+    model_age : float
+        Time since the response curve was that of the machine as it is [s]; 0 while it is.
+    now : float
+        Time by the alarm's clock [s].
+    """
+    leading, ahead = alarm.leading, outlook.next
+    values = {
+        "branch": str(branch),
+        "bistable": "unknown" if outlook.bistable is None else str(outlook.bistable).lower(),
+        "next_jump": str(ahead.direction),
+        "next_jump_rpm": _number(ahead.speed / _RPM),
+        "margin_rpm": _number(outlook.margin / _RPM),
+        "margin_percent": _number(100.0 * outlook.relative_margin),
+        "time_to_jump_s": _number(outlook.time_to_jump),
+        "eccentricity": _number(eccentricity),
+        "eccentricity_after": _number(ahead.eccentricity_after),
+        "run_up_jump_rpm": _number(outlook.run_up.speed / _RPM),
+        "coast_down_jump_rpm": _number(outlook.coast_down.speed / _RPM),
+        "alarm": str(alarm.state(now)),
+        "since_s": _number(now - leading.since),
+        "occurrences": str(leading.occurrences),
+        "model_age_s": _number(model_age),
+    }
+    sentence = advice(alarm, outlook, eccentricity, now)
+    return Status("Jump", Level(alarm.level(now)), sentence, values)
+
+
+def _number(value: float) -> str:
+    """Return a number with six digits."""
+    return f"{value:.6g}"

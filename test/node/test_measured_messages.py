@@ -1,0 +1,84 @@
+"""Measured orbits: what is predicted can be read as measured, and nothing else can."""
+
+import math
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy")
+
+from sfd_hbm_ros.hbm import Harmonics, JournalMotion
+from sfd_hbm_ros.node.inputs import InputError
+from sfd_hbm_ros.node.measured_messages import read_measured
+from sfd_hbm_ros.node.messages import harmonics_message
+
+from .graph import JointState, Time
+
+
+@pytest.mark.parametrize("harmonics", [Harmonics(3), Harmonics(2, revolutions=2)], ids=str)
+def test_what_is_predicted_is_read_as_it_was(harmonics):
+    rng = np.random.default_rng(5)
+    motions = {
+        name: JournalMotion(name, 1e-4, harmonics, 1e-5 * rng.normal(size=(harmonics.rows, 2)))
+        for name in ("a", "b damper")
+    }
+    measured = read_measured(harmonics_message(Time(), "rotor", motions))
+    assert measured.keys() == motions.keys()
+    for name, motion in motions.items():
+        assert len(measured[name]) == 2 * len(harmonics.orders)
+        for (axis, order), amplitude in measured[name].items():
+            row = harmonics.orders.tolist().index(order)
+            expected = motion.harmonics.amplitudes(motion.coefficients)[row, "xy".index(axis)]
+            assert amplitude == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_phase_is_a_lag():
+    """A cos(i W t - p): at a lag of a quarter of a turn the motion is a sine, Q = -i A."""
+    read = read_measured(
+        JointState(
+            name=["d/y/2x/phase", "d/y/2x/amplitude", "d/x/0x"],
+            position=[math.pi / 2, 3e-6, -1e-6],
+        )
+    )
+    assert read["d"]["y", 2.0] == pytest.approx(-3e-6j, abs=1e-20)
+    assert read["d"]["x", 0.0] == -1e-6
+
+
+def test_half_orders_are_read():
+    names = ["d/x/0.5x/amplitude", "d/x/0.5x/phase"]
+    assert read_measured(JointState(name=names, position=[1.0, 0.0])) == {"d": {("x", 0.5): 1.0}}
+
+
+@pytest.mark.parametrize(
+    ("names", "values", "sentence"),
+    [
+        (["d/x/0x"], [], "position must hold a number for each of the 1 names, not 0"),
+        (["d/x/0x", "d/x/0x"], [1.0, 1.0], "d/x/0x must be given once"),
+        (["d/x/0x"], [math.nan], "d/x/0x must be a finite number, not nan"),
+        (["d/x/1x/phase"], [math.inf], "d/x/1x/phase must be a finite number, not inf"),
+        (["d/x/1x/amplitude"], [-1.0], "amplitude must be a finite number of at least 0, not -1"),
+        (["d/x/1x/amplitude"], [1.0], "d/x/1x/phase is missing beside d/x/1x/amplitude"),
+        (["d/x/1x/phase"], [1.0], "d/x/1x/amplitude is missing beside d/x/1x/phase"),
+        (["d/z/0x"], [1.0], "'d/z/0x' must be the name of a harmonic"),
+        (["d/x/1x"], [1.0], "'d/x/1x' must be the name of a harmonic"),
+        (["d/x/0x/amplitude"], [1.0], "'d/x/0x/amplitude' must be the name of a harmonic"),
+        (["d/x/0.0x/phase"], [1.0], "'d/x/0.0x/phase' must be the name of a harmonic"),
+        (["d/x/-1x/phase"], [1.0], "'d/x/-1x/phase' must be the name of a harmonic"),
+        (["d/x/1.0x/phase"], [1.0], "'d/x/1.0x/phase' must be the name of a harmonic"),
+        (["d/x/01x/phase"], [1.0], "'d/x/01x/phase' must be the name of a harmonic"),
+        (["/x/0x"], [1.0], "'/x/0x' must be the name of a harmonic"),
+        (["x" * 5000 + "/x/0x"], [math.nan], "must be a finite number"),
+        (["x" * 5000 + "/x/2x/phase"], [1.0], "/x/2x/amplitude is missing beside"),
+        (["d/x/nanx/phase"], [1.0], "'d/x/nanx/phase' must be the name of a harmonic"),
+        (["x/" * 5000], [1.0], r"must be the name of a harmonic"),
+        ([""], [1.0], "'' must be the name of a harmonic: DAMPER/x/0x"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(names, values, sentence):
+    with pytest.raises(InputError, match=sentence) as refused:
+        read_measured(JointState(name=names, position=values))
+    assert len(str(refused.value)) < 200
+
+
+def test_nothing_measured_is_nothing():
+    assert read_measured(JointState()) == {}
