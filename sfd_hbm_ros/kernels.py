@@ -14,7 +14,7 @@ import numba
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def kernel(*signatures: str) -> Callable[[Function], Function]:
+def kernel(signature: str) -> Callable[[Function], Function]:
     """Decorate a function that Python calls; it is compiled, or loaded from disk, at once.
 
     Compiled code is kept beside the source, or else in the user's cache or in the folder that
@@ -23,18 +23,18 @@ def kernel(*signatures: str) -> Callable[[Function], Function]:
 
     Parameters
     ----------
-    *signatures : str
-        Types of the arguments and of the result, as Numba writes them: all that will be wanted,
-        so that nothing is compiled later.
+    signature : str
+        Types of the arguments and of the result, as Numba writes them: one signature, so that
+        nothing is compiled later.
     """
 
     def compiled(function: Function) -> Function:
         try:
-            return _compiled(function, list(signatures), cache=True)
+            return _compiled(function, signature, cache=True)
         except RuntimeError as error:
             if "no locator" not in str(error):
                 raise
-            return _compiled(function, list(signatures), cache=False)
+            return _compiled(function, signature, cache=False)
 
     return compiled
 
@@ -44,6 +44,6 @@ def part(function: Function) -> Function:
     return _compiled(function, None, cache=False)
 
 
-def _compiled(function: Function, signatures: list[str] | None, cache: bool) -> Function:
+def _compiled(function: Function, signature: str | None, cache: bool) -> Function:
     jit: Callable[..., Callable[[Function], Function]] = numba.jit
-    return jit(signatures, cache=cache, nopython=True, error_model="numpy")(function)
+    return jit(signature, cache=cache, nopython=True, error_model="numpy")(function)

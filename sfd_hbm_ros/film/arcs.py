@@ -10,7 +10,6 @@ degree 3: it has two zeros as long as the direction of W turns slower than theta
 otherwise.
 """
 
-import cmath
 import math
 
 import numpy as np
@@ -21,9 +20,7 @@ from sfd_hbm_ros.kernels import kernel, part
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-#: Most arcs that a state can have (neighbouring arcs may touch).
-MOST_ARCS = 6
-
+_ZEROS = 6
 _TURN_LIMIT = 0.95  # of the rate of theta: below 1 there are two zeros, nearer 1 Newton is slow
 _VANISHING = 1e-12  # of |v|^2: a W below it may be a rounded zero, where it turns at once
 _ITERATIONS = 8
@@ -97,40 +94,16 @@ def _zero(eps: float, v: complex, a: complex, side: float) -> float:
     return math.nan
 
 
-@part
-def _several_arcs(eps: float, v: complex, a: complex, ends: Array) -> int:
-    """Every interval between neighbouring zeros on which the pressure is positive.
-
-    The zeros are the angles of all six roots of the polynomial in exp(i theta). Roots off the
-    unit circle only divide an interval, so that no root has to be judged real or not.
-    """
-    c3 = eps**2 / 8.0 * a.conjugate()
-    if c3 == 0.0:  # a journal at the centre whose velocity and acceleration cancel
-        return 0
-    c2 = -0.5 * eps * a.conjugate()
-    c1 = 0.5 * (v.conjugate() + (1.0 + 0.5 * eps**2) * a.conjugate() + 0.25 * eps**2 * a)
-    c0 = complex(-eps * a.real, 0.0)
-    lower = (c2, c1, c0, c1.conjugate(), c2.conjugate(), c3.conjugate())
-    companion = np.zeros((MOST_ARCS, MOST_ARCS), dtype=np.complex128)
-    for i in range(MOST_ARCS):
-        companion[0, i] = -lower[i] / c3
-        if i > 0:
-            companion[i, i - 1] = 1.0
-    zeros = np.sort(np.angle(np.linalg.eigvals(companion)))
-    count = 0
-    for i in range(MOST_ARCS):
-        start = zeros[i]
-        end = zeros[i + 1] if i + 1 < MOST_ARCS else zeros[0] + 2.0 * math.pi
-        middle = 0.5 * (start + end)
-        w = v + _thickness_squared(eps, math.cos(middle)) * a
-        if (w.conjugate() * cmath.exp(1j * middle)).real > 0.0:
-            ends[count, 0], ends[count, 1] = start, end
-            count += 1
-    return count
+@kernel("boolean[::1](float64[::1], complex128[::1], complex128[::1], float64[:, :, ::1])")
+def _single_arcs(eps: Array, v: ComplexArray, a: ComplexArray, ends: Array) -> NDArray[np.bool_]:
+    """Set the ends of each state's only arc; for which states that is certain."""
+    single = np.empty(len(eps), dtype=np.bool_)
+    for i in range(len(eps)):
+        single[i], ends[i, 0, 0], ends[i, 0, 1] = _single_arc(eps[i], v[i], a[i])
+    return single
 
 
-@kernel("int64[::1](float64[::1], complex128[::1], complex128[::1], float64[:, :, ::1])")
-def positive_arcs(eps: Array, v: ComplexArray, a: ComplexArray, ends: Array) -> NDArray[np.int64]:
+def positive_arcs(eps: Array, v: ComplexArray, a: ComplexArray) -> tuple[Array, NDArray[np.int64]]:
     """Arcs of positive pressure of n states.
 
     Parameters
@@ -140,17 +113,41 @@ def positive_arcs(eps: Array, v: ComplexArray, a: ComplexArray, ends: Array) -> 
     v, a : (n,) complex arrays
         Velocity and scaled acceleration a rho c^2/(12 mu), both [m/s], in the frame of the
         line of centres, as x + i y.
-    ends : (n, MOST_ARCS, 2) array
-        Gets start and end of each state's arcs, as angles from the line of centres [rad].
 
     Returns
     -------
-    (n,) integer array
-        Number of each state's arcs, which may be none.
+    Start and end of each state's arcs (n, 6, 2), as angles from the line of centres [rad], and
+    their number (n,), which may be 0. Neighbouring arcs may touch.
     """
-    counts = np.ones(len(eps), dtype=np.int64)
-    for i in range(len(eps)):
-        single, ends[i, 0, 0], ends[i, 0, 1] = _single_arc(eps[i], v[i], a[i])
-        if not single:
-            counts[i] = _several_arcs(eps[i], v[i], a[i], ends[i])
-    return counts
+    ends, counts = np.empty((len(eps), _ZEROS, 2)), np.ones(len(eps), dtype=np.int64)
+    single = _single_arcs(eps, v, a, ends)
+    if not single.all():
+        rest = np.flatnonzero(~single)
+        ends[rest], counts[rest] = _several_arcs(eps[rest], v[rest], a[rest])
+    return ends, counts
+
+
+def _several_arcs(eps: Array, v: ComplexArray, a: ComplexArray) -> tuple[Array, NDArray[np.int64]]:
+    """Every interval between neighbouring zeros on which the pressure is positive.
+
+    The zeros are the angles of all six roots of the polynomial in exp(i theta). Roots off the
+    unit circle only divide an interval, so that no root has to be judged real or not.
+    """
+    c3 = eps**2 / 8.0 * a.conj()
+    c3[c3 == 0.0] = np.finfo(float).tiny  # velocity and acceleration cancel at the very centre
+    c2 = -0.5 * eps * a.conj()
+    c1 = 0.5 * (v.conj() + (1.0 + 0.5 * eps**2) * a.conj() + 0.25 * eps**2 * a)
+    c0 = -eps * a.real + 0j
+    lower = np.stack([c2, c1, c0, c1.conj(), c2.conj(), c3.conj()], axis=-1)
+    companion = np.zeros((len(eps), _ZEROS, _ZEROS), dtype=complex)
+    companion[:, 0, :] = -lower / c3[:, np.newaxis]
+    companion[:, np.arange(1, _ZEROS), np.arange(_ZEROS - 1)] = 1.0
+    start = np.sort(np.angle(np.linalg.eigvals(companion)), axis=-1)
+    end = np.hstack([start[:, 1:], start[:, :1] + 2.0 * np.pi])
+    middle = 0.5 * (start + end)
+    thickness = 1.0 - eps[:, np.newaxis] * np.cos(middle)
+    w = v[:, np.newaxis] + thickness**2 * a[:, np.newaxis]
+    positive = (w.conj() * np.exp(1j * middle)).real > 0.0
+    first = np.argsort(~positive, axis=-1, kind="stable")  # arcs of positive pressure first
+    ends = np.stack([np.take_along_axis(one, first, axis=-1) for one in (start, end)], axis=-1)
+    return ends, np.count_nonzero(positive, axis=-1)

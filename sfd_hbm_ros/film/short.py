@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.film.arcs import MOST_ARCS, positive_arcs
+from sfd_hbm_ros.film.arcs import positive_arcs
 from sfd_hbm_ros.film.frame import forces_of_integrals, seen_from_centres
 from sfd_hbm_ros.film.integrals import arc_integrals
 from sfd_hbm_ros.film.protocol import Array, FilmForces
@@ -103,6 +103,4 @@ class ShortFilm:
         if not self.cavitation:
             ends = np.tile([0.0, 2.0 * np.pi], (len(eps), 1, 1))
             return ends, np.ones(len(eps), dtype=np.int64)
-        ends = np.empty((len(eps), MOST_ARCS, 2))
-        scale = self._inertial * self.clearance**2 / self._viscous
-        return ends, positive_arcs(eps, v, scale * a, ends)
+        return positive_arcs(eps, v, self._inertial * self.clearance**2 / self._viscous * a)

@@ -19,12 +19,13 @@ def block_diagonal(blocks: ComplexArray) -> Array:
     """Real matrix (rows, n, rows, n) of one matrix an order; see `Harmonics.real_matrix`."""
     orders, n, _ = blocks.shape
     matrix = np.zeros((2 * orders - 1, n, 2 * orders - 1, n))
-    matrix[0, :, 0, :] = blocks[0].real
-    for k in range(1, orders):
-        cos, sin = 2 * k - 1, 2 * k
-        matrix[cos, :, cos, :] = matrix[sin, :, sin, :] = blocks[k].real
-        matrix[cos, :, sin, :] = blocks[k].imag
-        matrix[sin, :, cos, :] = -blocks[k].imag
+    for i in range(n):
+        for j in range(n):
+            matrix[0, i, 0, j] = blocks[0, i, j].real
+            for k in range(1, orders):
+                cos, sin, block = 2 * k - 1, 2 * k, blocks[k, i, j]
+                matrix[cos, i, cos, j] = matrix[sin, i, sin, j] = block.real
+                matrix[cos, i, sin, j], matrix[sin, i, cos, j] = block.imag, -block.imag
     return matrix
 
 

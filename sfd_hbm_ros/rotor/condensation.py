@@ -107,7 +107,7 @@ class Condensation:
         forces = frame.split(np.stack([none, model.static_force, model.unbalance]))
         forces_by_system = forces[1:].swapaxes(0, 1)
         self._parts: tuple[Any, ...] = tuple(
-            np.ascontiguousarray(array)
+            array.astype(complex, order="C")
             for array in (
                 bands(p11, half)[..., half:],
                 p12.swapaxes(2, 3),

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from sfd_hbm_ros.kernels import kernel, part
-from sfd_hbm_ros.rotor.arrays import ComplexArray, NumberArray, RealArray
+from sfd_hbm_ros.rotor.arrays import ComplexArray, RealArray
 
 _RESULT = "Tuple((complex128[:, :, :, :, ::1], complex128[:, :, :, ::1], int64))"
-_PENCILS = ", ".join(["{0}[:, :, :, ::1]"] * 4)
+_PENCILS = ", ".join(["complex128[:, :, :, ::1]"] * 4)
 _FORCES = "complex128[:, :, ::1], complex128[:, :, ::1]"
 _COEFFICIENTS = ", ".join(["float64[:, :, ::1]"] * 2)
 _SIGNATURE = f"{_RESULT}({_PENCILS}, {_FORCES}, {_COEFFICIENTS})"
@@ -26,6 +26,8 @@ _SIGNATURE = f"{_RESULT}({_PENCILS}, {_FORCES}, {_COEFFICIENTS})"
 @part
 def _factorise(band: Any, pivots: Any, half: int) -> bool:
     """LU decomposition with partial pivoting in place; whether no pivot is zero.
+
+    The diagonal gets the inverse pivots.
 
     Parameters
     ----------
@@ -39,19 +41,21 @@ def _factorise(band: Any, pivots: Any, half: int) -> bool:
     n = len(band)
     for k in range(n):
         last = min(n, k + half + 1)
-        pivot = k
-        for i in range(k + 1, last):
-            if abs(band[i, k - i + half]) > abs(band[pivot, k - pivot + half]):
-                pivot = i
+        pivot, largest = k, 0.0
+        for i in range(k, last):
+            entry = band[i, k - i + half]
+            size = abs(entry.real) + abs(entry.imag)
+            if size > largest:
+                pivot, largest = i, size
         pivots[k] = pivot
-        if band[pivot, k - pivot + half] == 0.0:
+        if largest == 0.0:
             return False
         end = min(n, k + 2 * half + 1)
         if pivot != k:
             for j in range(k, end):
                 one, other = j - k + half, j - pivot + half
                 band[k, one], band[pivot, other] = band[pivot, other], band[k, one]
-        inverse = 1.0 / band[k, half]
+        inverse = band[k, half] = 1.0 / band[k, half]
         for i in range(k + 1, last):
             shift = half - i
             factor = band[i, k + shift] * inverse
@@ -77,7 +81,7 @@ def _solve(band: Any, pivots: Any, half: int, x: Any) -> None:
         value = x[k]
         for j in range(k + 1, min(n, k + 2 * half + 1)):
             value -= band[k, j - k + half] * x[j]
-        x[k] = value / band[k, half]
+        x[k] = value * band[k, half]
 
 
 @part
@@ -126,12 +130,12 @@ def _subtract_force(result: Any, y: Any, forces: Any, factors: Any) -> None:
                     result[row] -= factors[k] * y[row, i] * forces[k, i]
 
 
-@kernel(_SIGNATURE.format("float64"), _SIGNATURE.format("complex128"))
+@kernel(_SIGNATURE)
 def condense(
-    p11: NumberArray,
-    p12: NumberArray,
-    p21: NumberArray,
-    p22: NumberArray,
+    p11: ComplexArray,
+    p12: ComplexArray,
+    p21: ComplexArray,
+    p22: ComplexArray,
     f1: ComplexArray,
     f2: ComplexArray,
     coefficients: RealArray,
@@ -141,11 +145,11 @@ def condense(
 
     Parameters
     ----------
-    p11 : (s, 4, n, 2 half + 1) array
+    p11 : (s, 4, n, 2 half + 1) complex array
         Pencils of P11 transposed; entry (i, j) stands at [i, j - i + half].
-    p12, p21 : (s, 4, d, n) arrays
+    p12, p21 : (s, 4, d, n) complex arrays
         Pencils of P12 transposed and of P21.
-    p22 : (s, 4, d, d) array
+    p22 : (s, 4, d, d) complex array
         Pencils of P22.
     f1, f2 : (s, 2, n), (s, 2, d) complex arrays
         Forces, to be multiplied by their factors and summed.
@@ -164,11 +168,10 @@ def condense(
     v = np.zeros((2, m, systems, d), dtype=np.complex128)
     band, pivots = np.empty((n, 3 * half + 1), dtype=p11.dtype), np.empty(n, dtype=np.int64)
     y, z = np.empty((d, n), dtype=p11.dtype), np.empty((d, n), dtype=p11.dtype)
-    identity = -np.eye(d)
     for i in range(m):
         c, change = coefficients[0, i], coefficients[1, i]
         for k in range(systems):
-            band[:] = 0.0
+            band.fill(0.0)
             _set(band, p11[k], c, 1.0)
             if not _factorise(band, pivots, half):
                 return u, v, i
@@ -185,7 +188,9 @@ def condense(
             _subtract_product(u[1, i, k], y, p12[k], change, 0.0)
             _subtract_product(u[1, i, k], z, p12[k], c, 1.0)
             for order in range(2):
-                _subtract_force(v[order, i, k], identity, f2[k], factors[order, i])
+                for row in range(d):
+                    for force in range(2):
+                        v[order, i, k, row] += factors[order, i, force] * f2[k, force, row]
                 _subtract_force(v[order, i, k], y, f1[k], factors[order, i])
             _subtract_force(v[1, i, k], z, f1[k], factors[0, i])
     return u, v, -1
