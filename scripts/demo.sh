@@ -6,6 +6,7 @@ set -euo pipefail
 
 output=$(build_package "$root" 2>&1) || die "colcon build failed: $output"
 use_package "$root"
+compile_kernels
 executables=$root/install/sfd_hbm_ros/lib/sfd_hbm_ros
 config=$root/install/sfd_hbm_ros/share/sfd_hbm_ros/config
 
