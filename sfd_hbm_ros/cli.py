@@ -1,7 +1,7 @@
 """The command line: `python3 -m sfd_hbm_ros VERB ...`, or `sfd_hbm VERB ...`.
 
 Exit status 0 with the result on standard output; 2 with one sentence on standard error for bad
-input; 1 with one sentence where no solution was found.
+input; 1 with one sentence where no solution was found; 130 where the user has interrupted.
 """
 
 import argparse
@@ -9,13 +9,15 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from sfd_hbm_ros.commands import modes, paper, simulate, solve, sweep
+from sfd_hbm_ros.commands import modes, paper, simulate, solve, study, sweep
 from sfd_hbm_ros.machine import MachineError
 from sfd_hbm_ros.response.curve import NoSolutionError
+from sfd_hbm_ros.study.results import IncompleteError
 
 VERBS = {
     "solve": solve,
     "sweep": sweep,
+    "study": study,
     "simulate": simulate,
     "modes": modes,
     "paper": paper,
@@ -44,14 +46,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         VERBS[chosen.verb].run(chosen)
     except BrokenPipeError:  # the reader of a pipe has seen enough
         sys.stderr.close()
-    except (MachineError, ValueError, OSError) as error:
+    except (MachineError, ValueError, OSError, ModuleNotFoundError) as error:
         return _refuse(parser.prog, error, 2)
-    except NoSolutionError as error:
+    except (NoSolutionError, IncompleteError) as error:
         return _refuse(parser.prog, error, 1)
+    except KeyboardInterrupt as interrupt:
+        return _refuse(parser.prog, str(interrupt) or "interrupted", 130)
     return 0
 
 
-def _refuse(program: str, error: Exception, status: int) -> int:
+def _refuse(program: str, error: Exception | str, status: int) -> int:
     print(f"{program}: {error}", file=sys.stderr)
     return status
 

@@ -3,6 +3,7 @@
 import sys
 import time
 from collections.abc import Callable
+from datetime import timedelta
 
 from sfd_hbm_ros.commands.arguments import RPM
 
@@ -49,7 +50,23 @@ def speed_bar(start: float, end: float) -> Describe:
 
     def describe(_: int, speed: float) -> str:
         part = (speed - start) / (end - start)
-        cells = "#" * round(part * _CELLS)
-        return f"[{cells:.<{_CELLS}}] {100.0 * part:3.0f} %  {speed / RPM:.0f} rpm"
+        return f"{_bar(part)} {100.0 * part:3.0f} %  {speed / RPM:.0f} rpm"
 
     return describe
+
+
+def share_bar(before: int, total: int, things: str) -> Describe:
+    """A bar that fills as things are done, some of them before now, with the time left."""
+    started = time.monotonic()
+
+    def describe(count: int, _: float) -> str:
+        done = before + count
+        left = (time.monotonic() - started) / count * (total - done)
+        clock = timedelta(seconds=round(left))
+        return f"{_bar(done / total)} {done} of {total} {things}, {clock} left"
+
+    return describe
+
+
+def _bar(part: float) -> str:
+    return f"[{'#' * round(part * _CELLS):.<{_CELLS}}]"

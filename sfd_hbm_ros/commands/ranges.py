@@ -34,7 +34,18 @@ def varied_from(text: str, machine: Machine) -> tuple[str, float, float]:
     """
     path, _, ends = text.partition("=")
     start, end = range_from(f"--vary {path}", ends)
+    check_number(machine, path)
+    return path, start, end
+
+
+def check_number(machine: Machine, path: str) -> None:
+    """Check that there is an entry at a dotted path, and that it is a number.
+
+    Raises
+    ------
+    MachineError
+        If there is none, or it is not a number.
+    """
     value = get(machine, path)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise MachineError("must be a number to vary", path)
-    return path, start, end

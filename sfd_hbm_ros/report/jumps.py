@@ -11,7 +11,7 @@ from sfd_hbm_ros.report.abscissa import Abscissa
 from sfd_hbm_ros.report.style import LINE
 from sfd_hbm_ros.response.jumps import Direction, Jump
 
-_COLOURS = {Direction.RUN_UP: "#c4460a", Direction.COAST_DOWN: "#0f8a6a"}
+COLOURS = {Direction.RUN_UP: "#c4460a", Direction.COAST_DOWN: "#0f8a6a"}
 _SPEED_NAMES = {Direction.RUN_UP: "run-up jump", Direction.COAST_DOWN: "coast-down jump"}
 _OTHER_NAMES = {Direction.RUN_UP: "jump on rising", Direction.COAST_DOWN: "jump on falling"}
 _UP = Path([(0.0, 0.0), (-0.6, -1.6), (0.6, -1.6), (0.0, 0.0)], closed=True)
@@ -42,7 +42,7 @@ def draw_jumps(axes: Axes, jumps: Iterable[Jump], damper: str, abscissa: Absciss
 
 def _arrow(axes: Axes, jump: Jump, damper: str, abscissa: Abscissa) -> Line2D:
     before, after = (one.journals[damper].eccentricity_max for one in (jump.before, jump.after))
-    colour = _COLOURS[jump.direction]
+    colour = COLOURS[jump.direction]
     rises = after > before
     style: dict[str, Any] = {
         "color": colour,

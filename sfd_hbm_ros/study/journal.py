@@ -1,0 +1,100 @@
+"""The outcomes of a study on disk as they come, so that a kill loses none of them."""
+
+import fcntl
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from sfd_hbm_ros.study.task import Outcome
+
+
+class Journal:
+    """A file of JSON lines: the study first, then the outcomes in the order in which they came.
+
+    Parameters
+    ----------
+    path : Path
+        The file, which is made where there is none.
+    study : mapping of str to JSON data
+        All that the outcomes depend on.
+
+    Attributes
+    ----------
+    outcomes : dict of int to Outcome
+        The outcomes that it holds, by the variants' numbers.
+
+    Raises
+    ------
+    OSError
+        If it cannot be opened or written, or another process is at it.
+    ValueError
+        If it is of another study, or not a journal.
+    """
+
+    def __init__(self, path: Path, study: Mapping[str, Any]) -> None:
+        self.path = path
+        self._file = open(path, "a+b")  # noqa: SIM115 - open as long as the journal is
+        try:
+            self._lock()
+            self.outcomes = self._resume(study)
+        except BaseException:
+            self._file.close()
+            raise
+
+    def add(self, number: int, outcome: Outcome) -> None:
+        """Keep an outcome: when this returns it is on the disk."""
+        self._write({"variant": number} | asdict(outcome))
+        self.outcomes[number] = outcome
+
+    def __enter__(self) -> "Journal":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
+
+    def _lock(self) -> None:
+        """Keep out other processes until the file is closed or this process is gone."""
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise BlockingIOError(f"{self.path}: another process is at this study") from None
+
+    def _resume(self, study: Mapping[str, Any]) -> dict[int, Outcome]:
+        """The outcomes that the file holds; a new file gets the study as its first line."""
+        self._file.seek(0)
+        content = self._file.read()
+        whole, end, _ = content.rpartition(b"\n")  # a kill may have cut the last line off
+        if not whole and _line(study).startswith(content):
+            self._file.truncate(0)
+            self._write(study)
+            return {}
+        try:
+            begun, outcomes = _parsed(whole)
+        except (ValueError, TypeError, KeyError, AttributeError):
+            raise ValueError(f"{self.path}: is not the journal of a study") from None
+        other = [key for key, value in study.items() if begun.get(key) != value]
+        if other:
+            raise ValueError(
+                f"{self.path}: holds a study with another {', '.join(other)}; delete it, or give "
+                "another --output"
+            )
+        self._file.truncate(len(whole + end))
+        return outcomes
+
+    def _write(self, data: Mapping[str, Any]) -> None:
+        self._file.write(_line(data))
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+
+def _parsed(text: bytes) -> tuple[dict[str, Any], dict[int, Outcome]]:
+    """The study and the outcomes of a journal's lines."""
+    study, *lines = map(json.loads, text.split(b"\n"))
+    return dict(study), {line.pop("variant"): Outcome(**line) for line in lines}
+
+
+def _line(data: Mapping[str, Any]) -> bytes:
+    return json.dumps(data).encode() + b"\n"

@@ -1,0 +1,95 @@
+"""Variants computed by processes of this machine."""
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
+from multiprocessing.connection import Connection
+from typing import Any
+
+from sfd_hbm_ros.study.task import Outcome, Task
+
+Variants = Mapping[int, Sequence[float]]
+
+_THREADS = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+
+
+def on_processes(
+    task: Task, variants: Variants, processes: int | None = None
+) -> Iterator[tuple[int, Outcome]]:
+    """Compute variants, and yield each with its number as it is ready.
+
+    Where a process is killed, those at work start anew, one at a time: the variant at which a
+    process dies every time, for want of memory perhaps, is left out, and the others go on.
+
+    Parameters
+    ----------
+    task : Task
+        How a variant is computed.
+    variants : mapping of int to sequence of float
+        The values of each variant by its number.
+    processes : int, optional
+        Number of processes; as many as there are cores where it is left out.
+    """
+    left, count = dict(variants), processes or os.cpu_count() or 1
+    alive = True
+    while left and alive:
+        alive = False
+        for number, outcome in _until_broken(task, left, count):
+            yield number, outcome
+            alive = True
+            del left[number]
+        for number in list(left)[:count]:  # at one of these a process has died
+            for one in _until_broken(task, {number: left.pop(number)}, 1):
+                yield one
+                alive = True
+
+
+def _until_broken(task: Task, variants: Variants, processes: int) -> Iterator[tuple[int, Outcome]]:
+    """Compute variants until all are done or a process has died."""
+    context = multiprocessing.get_context("spawn")  # not forked: other threads may hold locks
+    theirs, ours = context.Pipe(duplex=False)
+    pool = ProcessPoolExecutor(processes, context, _begin, (theirs,))
+    with pool, ours, suppress(BrokenProcessPool):  # `ours` closes first: see `_begin`
+        numbers: dict[Future[Outcome], int] = {}
+        with _to_be_inherited():
+            for number, values in variants.items():
+                numbers[pool.submit(task.outcome, values)] = number
+        theirs.close()
+        for future in as_completed(list(numbers)):
+            yield numbers.pop(future), future.result()
+
+
+def _begin(parent: "Connection[Any, Any]") -> None:
+    """Make a worker process end at once when the other end of a pipe closes.
+
+    That happens when nobody waits for its work any more, and when the parent has been killed.
+    """
+
+    def end() -> None:
+        with suppress(EOFError, OSError):
+            parent.recv()
+        os._exit(0)
+
+    threading.Thread(target=end, daemon=True).start()
+
+
+@contextmanager
+def _to_be_inherited() -> Iterator[None]:
+    """Give processes started meanwhile one BLAS thread each, and leave Ctrl-C to their parent."""
+    before = {name: os.environ.get(name) for name in _THREADS}
+    os.environ.update(_THREADS)
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
