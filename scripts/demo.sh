@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The predictor follows the paper's rotor through a simulated run-up and coast-down: two processes
-# that talk over DDS, and a third that prints what it receives. Ends by itself, or with Ctrl-C.
+# The predictor follows the paper's rotor through a simulated run-up and coast-down, with a jump on
+# each, and warns of both: two processes that talk over DDS, and a third that prints what it
+# receives. Ends by itself, or with Ctrl-C.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
 
@@ -9,6 +10,12 @@ use_package "$root"
 compile_kernels
 executables=$root/install/sfd_hbm_ros/lib/sfd_hbm_ros
 config=$root/install/sfd_hbm_ros/share/sfd_hbm_ros/config
+# The paper's greatest unbalance, 503.9 g mm: with less, this rotor does not jump.
+machine=(-p machine_file:="$config/paper_rotor.yaml" -p unbalance.disk_2.magnitude:=5.039e-4)
+# The curve spans the run, from 1 900 to 6 100 rpm. A few seconds of warning are enough at 250 rpm/s.
+watch=(-p speed.min:=200.0 -p speed.max:=640.0 -p alarm.time_warn:=4.0 -p alarm.time_error:=1.5)
+# Measured with some tenths of a micrometre of noise.
+noise=(-p orbit_noise:=3e-7 -p speed_noise:=0.02)
 
 export PYTHONUNBUFFERED=1
 export ROS_DOMAIN_ID=${ROS_DOMAIN_ID:-$((1 + $$ % 100))}
@@ -36,13 +43,15 @@ trap 'exit 143' TERM
 # through python3, as a script's first line cannot hold a path with spaces.
 set -m
 python3 "$executables/predictor" --ros-args --params-file "$config/predictor.yaml" \
-    -p machine_file:="$config/paper_rotor.yaml" </dev/null &
+    "${machine[@]}" "${watch[@]}" </dev/null &
 predictor=$!
 pids+=("$predictor")
 python3 -P -m sfd_hbm_ros.node.monitor --until-finished </dev/null &
 monitor=$!
 pids+=("$monitor")
-python3 "$executables/simulator" --ros-args -p subscribers:=2 </dev/null & # both of the above
+# It waits for both of the above.
+python3 "$executables/simulator" --ros-args "${machine[@]}" "${noise[@]}" -p subscribers:=2 \
+    </dev/null &
 simulator=$!
 pids+=("$simulator")
 set +m

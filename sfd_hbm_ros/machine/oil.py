@@ -77,6 +77,34 @@ class Oil(Part):
             raise MachineError(problem, "grade", cls.place)
         return cls(*ISO_VG[grade], density)
 
+    @classmethod
+    def configured(
+        cls, grade: int, viscosity_40: float, viscosity_100: float, density: float
+    ) -> Oil | None:
+        """Return the oil of a grade or, where that is 0, of two viscosities; None where all are 0.
+
+        Parameters
+        ----------
+        grade : int
+            ISO viscosity grade.
+        viscosity_40, viscosity_100 : float
+            Kinematic viscosities at 40 and 100 deg C [mm2/s].
+        density : float
+            Density at 40 deg C [kg/m3].
+
+        Raises
+        ------
+        MachineError
+            If a grade and viscosities are given, or the oil is not allowed.
+        """
+        measured = viscosity_40 != 0.0 or viscosity_100 != 0.0
+        if grade and measured:
+            problem = "must be 0 where viscosity_40 or viscosity_100 is given"
+            raise MachineError(f"{problem}, not {grade}", "grade", cls.place)
+        if measured:
+            return cls(viscosity_40, viscosity_100, density)
+        return cls.iso_vg(grade, density) if grade else None
+
     def kinematic_viscosity(self, celsius: float) -> float:
         """Return the kinematic viscosity [m2/s] at a temperature [deg C], by ASTM D341.
 

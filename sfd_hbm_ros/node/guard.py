@@ -7,6 +7,7 @@ negative time on /clock is enough.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from typing import Any
 
@@ -55,9 +56,10 @@ def spin(node: Node, report: Report) -> None:
 def _answering(callback: Callable[..., Any], report: Report) -> Callable[..., Any]:
     """Return a service's callback that does not raise."""
 
-    def answer(request: Any, response: Any) -> Any:
+    async def answer(request: Any, response: Any) -> Any:
         try:
-            return callback(request, response)
+            answered = callback(request, response)
+            return await answered if inspect.isawaitable(answered) else answered
         except Exception as error:
             report(error)
             return response

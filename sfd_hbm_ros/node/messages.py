@@ -18,6 +18,7 @@ from std_msgs.msg import Header
 from sfd_hbm_ros.hbm import JournalMotion
 from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.inputs import InputError
+from sfd_hbm_ros.response.measured import named_harmonics
 
 Journals = Mapping[str, JournalMotion]
 Named = Iterator[tuple[str, float]]
@@ -94,7 +95,7 @@ def eccentricity_message(
 
     `others` are those on the other stable branch, empty where there is none.
     """
-    return _positions(stamp, frame, eccentricities(journals, others))
+    return numbers_message(stamp, frame, dict(eccentricities(journals, others)))
 
 
 def harmonics_message(stamp: Time, frame: str, journals: Journals) -> JointState:
@@ -103,8 +104,7 @@ def harmonics_message(stamp: Time, frame: str, journals: Journals) -> JointState
     The mean X0 and the amplitudes A_i, zero to peak, are in metres. The phases are lags [rad], as
     in vibration monitoring.
     """
-    named = (pair for name, motion in journals.items() for pair in _harmonics(name, motion))
-    return _positions(stamp, frame, named)
+    return numbers_message(stamp, frame, named_harmonics(journals))
 
 
 def heartbeat_message(stamp: Time, frame: str) -> Header:
@@ -117,24 +117,25 @@ def diagnostics_message(
 ) -> DiagnosticArray:
     """Return what a node says about itself, named `node: subject` after REP 107."""
     array = DiagnosticArray(header=Header(stamp=stamp.to_msg()))
-    array.status = [
-        DiagnosticStatus(
-            level=bytes([status.level]),
-            name=f"{node}: {status.subject}",
-            message=status.message,
-            hardware_id=hardware,
-            values=[KeyValue(key=key, value=value) for key, value in status.values.items()],
-        )
-        for status in statuses
-    ]
+    array.status = [status_message(node, hardware, status) for status in statuses]
     return array
 
 
-def _positions(stamp: Time, frame: str, named: Named) -> JointState:
+def status_message(node: str, hardware: str, status: Status) -> DiagnosticStatus:
+    """Return how one subject of a node fares."""
+    return DiagnosticStatus(
+        level=bytes([status.level]),
+        name=f"{node}: {status.subject}",
+        message=status.message,
+        hardware_id=hardware,
+        values=[KeyValue(key=key, value=value) for key, value in status.values.items()],
+    )
+
+
+def numbers_message(stamp: Time, frame: str, numbers: Mapping[str, float]) -> JointState:
     """Return a message of named numbers."""
-    names, values = zip(*named, strict=True)
     header = Header(stamp=stamp.to_msg(), frame_id=frame)
-    return JointState(header=header, name=names, position=values)
+    return JointState(header=header, name=list(numbers), position=list(numbers.values()))
 
 
 def eccentricities(journals: Journals, others: Journals) -> Named:
@@ -150,58 +151,6 @@ def eccentricities(journals: Journals, others: Journals) -> Named:
         yield f"{damper}/static_y", float(static_y)
         other = others[damper].eccentricity_max if damper in others else math.nan
         yield f"{damper}/other_branch/max", other
-
-
-def _harmonics(damper: str, motion: JournalMotion) -> Named:
-    """Yield the harmonics of one journal with their names; sub-harmonics as 0.5x."""
-    orders = motion.harmonics.orders[1:].tolist()
-    for axis, cos, sin in zip("xy", motion.cos.T.tolist(), motion.sin.T.tolist(), strict=True):
-        yield f"{damper}/{axis}/0x", cos[0]
-        for order, c, s in zip(orders, cos[1:], sin[1:], strict=True):
-            harmonic = f"{damper}/{axis}/{order:g}x"
-            yield f"{harmonic}/amplitude", math.hypot(c, s)
-            yield f"{harmonic}/phase", math.atan2(s, c)
-
-
-def read_eccentricities(message: JointState) -> dict[str, tuple[float, float]]:
-    """Return the greatest and the mean eccentricity of every damper, NaN for what is left out.
-
-    Raises
-    ------
-    InputError
-        If names and numbers do not pair.
-    """
-    greatest, mean = {}, {}
-    for name, value in named(message):
-        match name.split("/"):
-            case [damper, "max"]:
-                greatest[damper] = value
-            case [damper, "mean"]:
-                mean[damper] = value
-    return {damper: (value, mean.get(damper, math.nan)) for damper, value in greatest.items()}
-
-
-def read_x_amplitudes(message: JointState) -> dict[str, list[float]]:
-    """Return the amplitudes of x of every damper from 1x on, zero to peak [m].
-
-    Raises
-    ------
-    InputError
-        If names and numbers do not pair.
-    """
-    amplitudes: dict[str, list[float]] = {}
-    for name, value in named(message):
-        match name.split("/"):
-            case [damper, "x", _, "amplitude"]:
-                amplitudes.setdefault(damper, []).append(value)
-    return amplitudes
-
-
-def read_diagnostics(message: DiagnosticArray, node: str) -> Iterator[tuple[str, int, str]]:
-    """Yield name, level and message of every status of a node, whatever its namespace."""
-    for status in message.status:
-        if status.name.partition(": ")[0].rpartition("/")[2] == node:
-            yield status.name, status.level[0], status.message
 
 
 def named(message: JointState) -> Named:

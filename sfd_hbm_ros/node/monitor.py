@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
@@ -19,26 +20,30 @@ from rclpy.task import Future
 from rclpy.utilities import remove_ros_args
 from sensor_msgs.msg import JointState
 
-from sfd_hbm_ros.node import messages
+from sfd_hbm_ros.node import monitor_messages
 from sfd_hbm_ros.node.inputs import InputError
+from sfd_hbm_ros.node.messages import read_speed, read_stamp
 from sfd_hbm_ros.node.process import run
 from sfd_hbm_ros.node.run_record import RunRecord
-from sfd_hbm_ros.node.run_text import HEADER, diagnosis, rows, summary
+from sfd_hbm_ros.node.run_text import HEADER, alarm, diagnosis, rows, summary
+from sfd_hbm_ros.node.run_warnings import WarningRecord
 
 # Best effort, as it matches every publisher; deep, so that no burst is lost.
 _QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
+_WARNED_OF = ": Jump"  # subject of the diagnostics that repeats the warning
 _LOOK = 0.1  # s between two looks for the end of the run
 _FAREWELL = 0.5  # s for the last prediction, after the speed's publisher has gone
 _PATIENCE = 60.0  # s to wait for the first speed
 _READERS: dict[str, Callable[[JointState], Any]] = {
-    "speed": messages.read_speed,
-    "eccentricity": messages.read_eccentricities,
-    "harmonics": messages.read_x_amplitudes,
+    "speed": read_speed,
+    "eccentricity": monitor_messages.read_eccentricities,
+    "harmonics": monitor_messages.read_x_amplitudes,
+    "measured": monitor_messages.read_x_amplitudes,
 }
 
 
 class Monitor(Node):
-    """Prints speeds, predictions and what the diagnostics say about them.
+    """Prints speeds, predictions, warnings of jumps and what the diagnostics say about them.
 
     Parameters
     ----------
@@ -50,13 +55,16 @@ class Monitor(Node):
     finished : Future
         Done at the end of the run.
     record : RunRecord
-        All that came.
+        The speeds, predictions and measured orbits that came.
+    warnings : WarningRecord
+        The warnings that came.
     """
 
     def __init__(self, until_finished: bool) -> None:
         # Without parameter services, nothing but its own messages can disturb it.
         super().__init__("monitor", start_parameter_services=False)
         self.record = RunRecord()
+        self.warnings = WarningRecord()
         self.finished = Future()
         self._until_finished = until_finished
         self._quiet = 0.0  # s for which nobody has published the speed, or none has come yet
@@ -68,6 +76,8 @@ class Monitor(Node):
             for topic in _READERS
         }
         self.speed_topic = topics["speed"]
+        warning = "predictor/jump_warning"
+        self.create_subscription(DiagnosticArray, warning, self._take_warning, _QOS)
         self.create_subscription(DiagnosticArray, "/diagnostics", self._take_diagnostics, _QOS)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(1.0, self._print_news, clock=steady)
@@ -84,24 +94,40 @@ class Monitor(Node):
 
     def _take(self, topic: str, message: JointState) -> None:
         """Record a message."""
+        with self._reading(topic):
+            stamp, value = read_stamp(message.header), _READERS[topic](message)
+            if topic == "measured":
+                self.record.measure(stamp, value)
+            elif (point := self.record.take(stamp, topic, value)) is not None:
+                self.warnings.follow(point)
+
+    def _take_warning(self, message: DiagnosticArray) -> None:
+        """Print a warning that says something new."""
+        with self._reading("jump_warning"):
+            warning = monitor_messages.read_warning(message)
+            if self.warnings.take(warning):
+                print(alarm(warning), flush=True)
+
+    def _take_diagnostics(self, message: DiagnosticArray) -> None:
+        """Print what the predictor says about a subject whose level has changed."""
+        for name, level, text in monitor_messages.read_diagnostics(message, "predictor"):
+            if level != self._levels.get(name, 0) and not name.endswith(_WARNED_OF):
+                print(diagnosis(name, level, text), flush=True)
+            self._levels[name] = level
+
+    @contextmanager
+    def _reading(self, topic: str) -> Iterator[None]:
+        """Ignore a message that cannot be read, and say so."""
         try:
-            stamp = messages.read_stamp(message.header)
-            self.record.take(stamp, topic, _READERS[topic](message))
+            yield
         except InputError as error:
             problem = f"ignored on predictor/{topic}: {error}"
             self.get_logger().warning(problem, throttle_duration_sec=1.0)
 
-    def _take_diagnostics(self, message: DiagnosticArray) -> None:
-        """Print what the predictor says about a subject whose level has changed."""
-        for name, level, text in messages.read_diagnostics(message, "predictor"):
-            if level != self._levels.get(name, 0):
-                print(diagnosis(name, level, text), flush=True)
-            self._levels[name] = level
-
     def _print_news(self) -> None:
         """Print the newest prediction, or speed, of the last second."""
         if self.record.news is not None:
-            print(rows(self.record.news), flush=True)
+            print(rows(self.record.news, self.warnings.newest), flush=True)
             self.record.news = None
 
     def _look_for_the_end(self) -> None:
@@ -137,7 +163,7 @@ def _watch(monitor: Monitor) -> int:
     except BrokenPipeError:  # who read the rows has seen enough, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     finally:
-        print(f"\n{summary(monitor.record)}", flush=True)
+        print(f"\n{summary(monitor.record, monitor.warnings)}", flush=True)
     problem = monitor.problem() if monitor.finished.done() else ""
     if problem:
         print(f"monitor: {problem}", file=sys.stderr)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
 from geometry_msgs.msg import WrenchStamped
 from rclpy.clock import Clock
@@ -14,14 +13,15 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
-from sfd_hbm_ros.machine import MachineError
+from sfd_hbm_ros.machine import Machine
 from sfd_hbm_ros.node import messages
-from sfd_hbm_ros.node.inputs import Drops, Feed, InputError, Pending
+from sfd_hbm_ros.node.dropping import dropping
+from sfd_hbm_ros.node.inputs import Feed, InputError, Pending
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.prediction import Model, Prediction
+from sfd_hbm_ros.response.acceleration import AccelerationEstimator
 
 _QUEUE = 10
-_LOG_PAUSE = 5.0  # s between two log messages about bad input
 
 
 class Operation:
@@ -49,6 +49,10 @@ class Operation:
         How many there were, and how many of them without a solution.
     speed, load : Feed
         What arrived.
+    after_change : list of callable
+        Called when the machine has changed: another one, other values, loads or harmonics.
+    after_prediction : list of callable
+        Called with every prediction and its stamp [ns], once it has been published.
     """
 
     def __init__(self, node: LifecycleNode, parameters: Parameters) -> None:
@@ -57,6 +61,9 @@ class Operation:
         self.prediction: Prediction | None = None
         self.predictions = 0
         self.failures = 0
+        self.after_change: list[Callable[[], None]] = []
+        self.after_prediction: list[Callable[[Prediction, int], None]] = []
+        self._estimator = AccelerationEstimator()
         self._node = node
         self._parameters = parameters
         self._pending: Pending[int] = Pending(parameters["publish_rate"])
@@ -71,13 +78,43 @@ class Operation:
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._due = node.create_timer(1.0, self._predict, clock=steady, autostart=False)
 
+    @property
+    def acceleration(self) -> float:
+        """Angular acceleration [rad/s2]; NaN while it is unknown."""
+        return self._estimator.acceleration
+
+    @property
+    def silence(self) -> str:
+        """Why nothing is predicted now, in words; empty if something is."""
+        if not self.active:
+            return "the node is not active"
+        if self.speed.value is None:
+            return "no speed has arrived yet"
+        stale = self.speed.age(time.monotonic()) > self._parameters["stale_after"]
+        return "the speed is stale" if stale else ""
+
+    def begin(self, machine: Machine) -> Model:
+        """Have another machine, which is not predicted yet."""
+        self.model = model = Model(machine, self._parameters["harmonics"])
+        self._changed()
+        return model
+
+    def change(self, machine: Machine) -> None:
+        """Go on with other values of the machine or other harmonics, and predict soon."""
+        assert self.model is not None
+        self.model.change(machine, self._parameters["harmonics"])
+        self._changed()
+        self.predict_again()
+
     def stop(self) -> None:
-        """Predict no more, and forget what will not hold any longer at the next start."""
+        """Predict no more, and wait for another speed at the next start.
+
+        The operating point is kept as it would be over a restart of the node: the machine goes on.
+        """
         self.active = False
         self.prediction = None
         self.speed.forget()
-        if self.model is not None:
-            self.model.forget()
+        self._estimator.forget()
 
     def release(self) -> None:
         """Stop, and forget the machine and its loads."""
@@ -90,21 +127,22 @@ class Operation:
         self._pending.rate = self._parameters["publish_rate"]
 
     def predict_again(self) -> None:
-        """Predict once more, as the machine has changed: soon, whoever changed it hears first."""
+        """Predict once more as something has changed: soon, whoever changed it hears first."""
         self._pending.put(self._clock())
         self._schedule()
 
     def _on_speed(self, message: JointState) -> None:
         if not self.active:
             return
-        with self._dropping(self.speed):
+        with dropping(self._node, self.speed):
             speed = messages.read_speed(message)
             stamp = messages.read_stamp(message.header)
             stamp = self.speed.accept(speed, stamp, self._clock(), time.monotonic())
+            self._estimator.add(stamp, speed)
             self._request(stamp)
 
     def _on_load(self, message: WrenchStamped) -> None:
-        with self._dropping(self.load):
+        with dropping(self._node, self.load):
             if self.model is None:
                 raise InputError("there is no machine yet: the node is not configured")
             load = self.model.checked_load(*messages.read_load(message))
@@ -113,18 +151,13 @@ class Operation:
             stamp = self.load.accept(
                 load.force, stamp, self._clock(), time.monotonic(), stream=load.station
             )
-            self.model.add(load)
+            if self.model.add(load):
+                self._changed()
             self._request(stamp)
 
-    @contextmanager
-    def _dropping(self, feed: Drops) -> Iterator[None]:
-        """Count an input that turns out to be unusable, and say why."""
-        try:
-            yield
-        except (InputError, MachineError) as error:
-            feed.drop(str(error), time.monotonic())
-            text = f"dropped from {feed.source}: {error}"
-            self._node.get_logger().warning(text, throttle_duration_sec=_LOG_PAUSE)
+    def _changed(self) -> None:
+        for call in self.after_change:
+            call()
 
     def _request(self, stamp: int) -> None:
         """Predict with a stamp [ns], now or as soon as the rate allows it."""
@@ -142,18 +175,20 @@ class Operation:
     def _predict(self) -> None:
         """Predict and publish, if the node is active and the speed fresh."""
         self._due.cancel()
-        now = time.monotonic()
-        stamp, speed = self._pending.take(now), self.speed.value
-        fresh = self.speed.age(now) <= self._parameters["stale_after"]
-        if not (self.active and self.model and fresh) or stamp is None or speed is None:
+        stamp, speed = self._pending.take(time.monotonic()), self.speed.value
+        if self.silence or self.model is None or stamp is None or speed is None:
             return
-        self.prediction = self.model.predict(speed)
+        self.prediction = prediction = self.model.predict(speed)
         self.predictions += 1
-        self.failures += self.prediction.failed
+        self.failures += prediction.failed
         header = Time(nanoseconds=stamp), self._parameters["frame_id"]
-        journals = self.prediction.journals
-        self._eccentricity.publish(messages.eccentricity_message(*header, journals))
+        journals = prediction.journals
+        self._eccentricity.publish(
+            messages.eccentricity_message(*header, journals, prediction.others)
+        )
         self._harmonics.publish(messages.harmonics_message(*header, journals))
+        for call in self.after_prediction:
+            call(prediction, stamp)
 
     def _clock(self) -> int:
         """Return the time by the node's clock [ns]."""

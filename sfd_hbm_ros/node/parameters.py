@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from sfd_hbm_ros.machine import Machine, override_all
+from sfd_hbm_ros.machine import Machine, MachineError, override_all
 from sfd_hbm_ros.machine.errors import show_key, unknown
+from sfd_hbm_ros.machine.oil import Oil
 from sfd_hbm_ros.node.schema import SCHEMA, ParameterError, Spec, machine_schema
+from sfd_hbm_ros.response.alarm_settings import AlarmSettings
 
 _SECTIONS = ("dampers", "unbalance", "gravity")
 
@@ -45,11 +47,56 @@ class Parameters:
 
         Raises
         ------
-        ParameterError
-            If it was not allowed.
+        ParameterError, MachineError
+            If it was not allowed, or does not go together.
         """
         if self._refused:
             raise ParameterError("; ".join(self._refused.values()))
+        self.check_together()
+
+    def check_together(self, parameters: Iterable[Parameter] = ()) -> None:
+        """Check that the parameters go together when some have been set.
+
+        Raises
+        ------
+        ParameterError, MachineError
+            If they do not.
+        """
+        values = {parameter.name: parameter.value for parameter in parameters}
+        self.alarm_settings(values)
+        self.oil(values)
+        lowest, highest = (values.get(name, self[name]) for name in ("speed.min", "speed.max"))
+        if not lowest < highest:
+            raise ParameterError(
+                f"speed.max must be above speed.min, {lowest:g} rad/s, not {highest:g}"
+            )
+
+    def alarm_settings(self, values: Mapping[str, Any] | None = None) -> AlarmSettings:
+        """Return the settings of the alarm, where some values take precedence.
+
+        Raises
+        ------
+        MachineError
+            If they do not go together.
+        """
+        given = {key: f"alarm.{key}" for key in AlarmSettings.rules}
+        try:
+            return AlarmSettings(
+                **{key: (values or {}).get(name, self[name]) for key, name in given.items()}
+            )
+        except MachineError as error:
+            raise error.at("alarm") from None
+
+    def oil(self, values: Mapping[str, Any] | None = None) -> Oil | None:
+        """Return the oil that is configured, if any, where some values take precedence.
+
+        Raises
+        ------
+        MachineError
+            If there is no such oil.
+        """
+        names = ("oil.grade", "oil.viscosity_40", "oil.viscosity_100", "oil.density")
+        return Oil.configured(*((values or {}).get(name, self[name]) for name in names))
 
     def adopt(self, machine: Machine) -> Machine:
         """Declare the values of a machine, and return it with those given at the start.

@@ -8,8 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion, Solution, solve
+from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion
 from sfd_hbm_ros.machine import Load, Machine
+from sfd_hbm_ros.response.tracked import Tracked
+from sfd_hbm_ros.response.tracker import Tracker
 
 AT_REST = "the rotor is at rest: there is nothing to predict"
 
@@ -34,6 +36,8 @@ class Prediction:
         Newton steps of the last attempt.
     seconds : float
         Time it took [s].
+    tracked : Tracked or None
+        The operating point; None where there is no solution.
     """
 
     speed: float
@@ -43,10 +47,17 @@ class Prediction:
     residual: float = float("nan")
     iterations: int = 0
     seconds: float = 0.0
+    tracked: Tracked | None = None
+
+    @property
+    def others(self) -> Mapping[str, JournalMotion]:
+        """The journals on the other stable branch; empty where none is known."""
+        other = self.tracked.other if self.tracked else None
+        return other.journals if other else {}
 
 
 class Model:
-    """A machine as configured, the loads that arrived for it, and its last solution.
+    """A machine as configured, the loads that arrived for it, and where it is on its branches.
 
     Parameters
     ----------
@@ -54,14 +65,28 @@ class Model:
         The machine.
     highest : int
         The highest harmonic to balance.
+
+    Attributes
+    ----------
+    machine : Machine
+        The machine with its present values, without the loads that arrived.
+    harmonics : Harmonics
+        The harmonics to balance.
+    tracker : Tracker
+        Follows the operating point.
     """
 
     def __init__(self, machine: Machine, highest: int) -> None:
         self.machine = machine
         self.harmonics = Harmonics(highest)
         self._loads: dict[str, Load] = {}
-        self._last: Solution | None = None
-        self._balance: HarmonicBalance | None = self._build()
+        self._balance: HarmonicBalance | None = None
+        self.tracker = Tracker(self._build())
+
+    @property
+    def loaded(self) -> Machine:
+        """The machine with all loads that act on it."""
+        return _loaded(self.machine, self._loads)
 
     def change(self, machine: Machine, highest: int) -> None:
         """Go on with other values of the same machine and other harmonics."""
@@ -81,17 +106,23 @@ class Model:
         _loaded(self.machine, {station: load})
         return load
 
-    def add(self, load: Load) -> None:
-        """Let a load act, in place of any other at its station."""
+    def add(self, load: Load) -> bool:
+        """Let a load act, in place of any other at its station; tell whether it is another."""
+        if self._loads.get(load.station) == load:
+            return False
         self._loads[load.station] = load
         self._balance = None
+        return True
 
-    def forget(self) -> None:
-        """Begin anew with the next prediction: what the machine did meanwhile is not known."""
-        self._last = None
+    def balance(self) -> HarmonicBalance:
+        """Return the equations of the machine under its loads, which the tracker now goes by."""
+        if self._balance is None:
+            self.tracker.change(self._build())
+        assert self._balance is not None
+        return self._balance
 
     def predict(self, speed: float) -> Prediction:
-        """Predict the motion at a speed [rad/s] from the last solution.
+        """Follow the machine to a speed [rad/s].
 
         Whatever goes wrong is told by the prediction: no exception is raised.
         """
@@ -101,27 +132,27 @@ class Model:
         try:
             # Where numbers overflow there is no solution: that is said, not warned about.
             with np.errstate(all="ignore"):
-                if self._balance is None:
-                    self._balance = self._build()
-                solution = solve(self._balance, speed, self._last)
-        except Exception as error:  # a speed or a machine beyond what numbers can hold
+                self.balance()
+        except Exception as error:  # a machine beyond what numbers can hold
             reason = f"the solver gave up: {type(error).__name__}: {error}"
             return Prediction(speed, self._unknown(), True, reason)
-        if solution.converged:
-            self._last = solution
+        tracked = self.tracker.predict(speed)
+        solution = tracked.solution
+        begun = solution.converged or solution.residuals
         return Prediction(
             speed,
             solution.journals,
             not solution.converged,
-            solution.message,
+            solution.message if begun else f"the solver gave up: {solution.message}",
             solution.residual,
             solution.iterations,
             time.perf_counter() - start,
+            tracked if solution.converged else None,
         )
 
     def _build(self) -> HarmonicBalance:
-        """Return the equations of the machine under its loads."""
-        return HarmonicBalance(_loaded(self.machine, self._loads), self.harmonics)
+        self._balance = HarmonicBalance(self.loaded, self.harmonics)
+        return self._balance
 
     def _unknown(self) -> dict[str, JournalMotion]:
         """Return motions that are not known."""

@@ -12,16 +12,25 @@ from rclpy.parameter import Parameter
 
 from sfd_hbm_ros.machine import MachineError, override_all, read_machine
 from sfd_hbm_ros.node import diagnostics, guard
+from sfd_hbm_ros.node.curves import Curves
 from sfd_hbm_ros.node.inputs import Drops
+from sfd_hbm_ros.node.measurement import Measurement
+from sfd_hbm_ros.node.memory import Memory
+from sfd_hbm_ros.node.oil_feed import OilFeed
 from sfd_hbm_ros.node.operation import Operation
+from sfd_hbm_ros.node.orbit import Orbits
 from sfd_hbm_ros.node.parameters import Parameters
-from sfd_hbm_ros.node.prediction import Model
 from sfd_hbm_ros.node.process import run
 from sfd_hbm_ros.node.reporter import Reporter
 from sfd_hbm_ros.node.schema import ParameterError
+from sfd_hbm_ros.node.self_test import SelfTestService
+from sfd_hbm_ros.node.watch import Watch
+from sfd_hbm_ros.node.what_if import WhatIf
+from sfd_hbm_ros.node.worker_status import with_worker
 
 _SUCCESS = TransitionCallbackReturn.SUCCESS
 _LOG_PAUSE = 5.0  # s between two log messages about exceptions
+_SETTLED = ("machine_file", "state_file")  # parameters that stay while there is a machine
 
 
 class Predictor(LifecycleNode):
@@ -40,6 +49,14 @@ class Predictor(LifecycleNode):
         self.add_on_set_parameters_callback(self._check)
         self.add_post_set_parameters_callback(self._apply)
         self._operation = Operation(self, self._known)
+        self._curves = Curves(self, self._known, self._operation)
+        self._watch = Watch(self, self._operation, self._curves, self._hardware)
+        self._memory = Memory(self, self._known, self._operation, self._watch)
+        Orbits(self, self._operation)
+        self._what_if = WhatIf(self, self._known, self._operation, self._curves)
+        self._measurement = Measurement(self, self._known, self._operation)
+        self._oil = OilFeed(self, self._known, self._operation)
+        SelfTestService(self)
         self._reporter = Reporter(self, self._hardware, self._statuses)
         guard.answer_always(self, self.caught)
         if self._known["autostart"] and self.trigger_configure() == _SUCCESS:
@@ -53,7 +70,8 @@ class Predictor(LifecycleNode):
             if not path:
                 raise ParameterError("machine_file must be the path of a machine file, not empty")
             machine = self._known.adopt(read_machine(path))
-            self._operation.model = Model(machine, self._known["harmonics"])
+            self._watch.alarm.settings = self._known.alarm_settings()
+            self._memory.restore(self._operation.begin(machine))
         except Exception as error:  # whatever it is, the node stays up and says it
             self._release("unconfigured")
             self._problem = str(error)
@@ -72,6 +90,7 @@ class Predictor(LifecycleNode):
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Predict no more; loads and values are still taken."""
         self._label = "inactive"
+        self._memory.save()
         self._operation.stop()
         return super().on_deactivate(state)
 
@@ -93,8 +112,16 @@ class Predictor(LifecycleNode):
     def _release(self, label: str) -> None:
         """Give up the machine."""
         self._label, self._problem = label, ""
+        self._memory.release()
         self._operation.release()
+        self._curves.release()
+        self._watch.release()
         self._known.release()
+
+    def close(self) -> None:
+        """Save what is to outlive the process, and end the worker process."""
+        self._memory.release()
+        self._curves.release()
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters together, or none for a reason; both parameter services end here."""
@@ -107,14 +134,12 @@ class Predictor(LifecycleNode):
     def _check(self, parameters: list[Parameter]) -> SetParametersResult:
         """Say whether parameters can be set, without setting anything."""
         model = self._operation.model
-        if model is None:
-            return SetParametersResult(successful=True)
-        if any(parameter.name == "machine_file" for parameter in parameters):
-            reason = "machine_file can only be changed while the node is unconfigured: clean it up"
-            return SetParametersResult(successful=False, reason=reason)
         try:
-            override_all(model.machine, self._known.machine_values(parameters))
-        except MachineError as error:
+            self._known.check_together(parameters)
+            if model is not None:
+                _check_settled(parameters)
+                override_all(model.machine, self._known.machine_values(parameters))
+        except (MachineError, ParameterError) as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
@@ -122,10 +147,11 @@ class Predictor(LifecycleNode):
         """Let parameters that have been set take effect."""
         self._known.take(parameters)
         self._operation.update()
+        self._watch.alarm.settings = self._known.alarm_settings()
         model, values = self._operation.model, self._known.machine_values(parameters)
         if model is not None and (values or any(p.name == "harmonics" for p in parameters)):
-            model.change(override_all(model.machine, values), self._known["harmonics"])
-            self._operation.predict_again()
+            self._operation.change(override_all(model.machine, values))
+        self._curves.look()
 
     def caught(self, error: Exception) -> None:
         """Count an exception that a callback raised, and say which."""
@@ -143,19 +169,37 @@ class Predictor(LifecycleNode):
     def _statuses(self) -> list[diagnostics.Status]:
         """Return how the node fares."""
         work = self._operation
+        model = diagnostics.model_status(
+            self._label, self._problem, self._known["machine_file"], work.model
+        )
+        model = with_worker(self._curves.added_to(model), self._curves.worker)
         return [
-            diagnostics.model_status(
-                self._label, self._problem, self._known["machine_file"], work.model
-            ),
+            self._watch.status(),
+            self._measurement.added_to(self._memory.added_to(model)),
             diagnostics.solver_status(work.prediction, work.predictions, work.failures),
             diagnostics.inputs_status(
                 work.active,
                 work.speed,
-                [work.load, self._exceptions],
+                [
+                    work.load,
+                    self._measurement.feed,
+                    self._oil.feed,
+                    self._what_if.drops,
+                    self._exceptions,
+                ],
                 self._known["stale_after"],
                 time.monotonic(),
             ),
         ]
+
+
+def _check_settled(parameters: list[Parameter]) -> None:
+    """Refuse what cannot be changed while there is a machine."""
+    for parameter in parameters:
+        if parameter.name in _SETTLED:
+            raise ParameterError(
+                f"{parameter.name} can only be changed while the node is unconfigured: clean it up"
+            )
 
 
 def main() -> int:
@@ -164,7 +208,10 @@ def main() -> int:
 
 
 def _spin(predictor: Predictor) -> int:
-    guard.spin(predictor, predictor.caught)
+    try:
+        guard.spin(predictor, predictor.caught)
+    finally:
+        predictor.close()
     return 0
 
 

@@ -1,14 +1,16 @@
 """A node as a process: signals end it cleanly, its user's mistakes with one sentence."""
 
+import signal
 import sys
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import TypeVar
 
 import rclpy
 from rclpy.exceptions import ParameterException
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions, get_current_signal_handlers_options
 from rclpy.utilities import get_default_context, try_shutdown
 
 from sfd_hbm_ros.machine import MachineError
@@ -38,14 +40,36 @@ def run(name: str, make: Callable[[], N], work: Callable[[N], int]) -> int:
         for wrong arguments or parameters.
     """
     try:
-        node = _made(name, make)
-        return BAD_INPUT if node is None else work(node)
+        with _interrupts_left_to_rclpy():
+            try:
+                node = _made(name, make)
+                return BAD_INPUT if node is None else work(node)
+            finally:
+                # After a signal rclpy shuts down in a thread of its own, and fails where that is
+                # faster.
+                with suppress(RuntimeError):
+                    try_shutdown()
     except (KeyboardInterrupt, ExternalShutdownException):
         return 0
+
+
+@contextmanager
+def _interrupts_left_to_rclpy() -> Iterator[None]:
+    """Have SIGINT end the process as SIGTERM does: between two callbacks.
+
+    rclpy shuts its context down and then calls Python's own handler, whose KeyboardInterrupt would
+    come in the midst of anything, such as the start of a thread.
+    """
+
+    def interrupt(*_: object) -> None:
+        if get_current_signal_handlers_options() == SignalHandlerOptions.NO:
+            raise KeyboardInterrupt  # as rclpy is not up yet, or not any more
+
+    before = signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
     finally:
-        # After a signal rclpy shuts down in a thread of its own, and fails where that is faster.
-        with suppress(RuntimeError):
-            try_shutdown()
+        signal.signal(signal.SIGINT, before)
 
 
 def _made(name: str, make: Callable[[], N]) -> N | None:

@@ -1,8 +1,8 @@
 """What came during a run, and how its way up and its way down compare. Without ROS."""
 
+import math
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from itertools import pairwise
 from types import MappingProxyType
 from typing import Any
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.node.joining import Joining
+from sfd_hbm_ros.node.run_point import DamperPoint, RunPoint
 from sfd_hbm_ros.node.speed_profile import RPM
 
 Array = NDArray[np.float64]
@@ -20,48 +21,8 @@ PARTS = frozenset({"speed", "eccentricity", "harmonics"})
 
 _NOTHING: Mapping[str, Any] = MappingProxyType({})
 _BRIDGED = 3.0  # times the usual distance of two speeds: over more nothing is interpolated
+_UNPAIRED = 100  # measured orbits kept until the prediction at their speed comes
 _LIMIT = 100_000  # predictions kept, so that a monitor left alone does not fill the memory
-
-
-@dataclass(frozen=True)
-class DamperPoint:
-    """What was predicted for one damper.
-
-    Attributes
-    ----------
-    eccentricity_max, eccentricity_mean : float
-        Over one orbit; NaN where there is no solution.
-    amplitudes : tuple of float
-        Amplitudes of x from 1x on, zero to peak [m].
-    """
-
-    eccentricity_max: float
-    eccentricity_mean: float
-    amplitudes: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class RunPoint:
-    """A speed and what was predicted at it.
-
-    Attributes
-    ----------
-    time : float
-        Since the first speed [s].
-    rpm : float
-        Rotor speed [rpm].
-    dampers : mapping of str to DamperPoint
-        By the damper's name; empty where nothing was predicted.
-    """
-
-    time: float
-    rpm: float
-    dampers: Mapping[str, DamperPoint] = field(default_factory=dict)
-
-    @property
-    def solved(self) -> bool:
-        """Whether there is a solution."""
-        return all(np.isfinite(d.eccentricity_max) for d in self.dampers.values())
 
 
 class RunRecord:
@@ -76,7 +37,8 @@ class RunRecord:
     speeds : int
         How many speeds came.
     news : RunPoint or None
-        The newest prediction, or the newest speed if none is newer; for the reader to clear.
+        The newest prediction beside which there is a measured orbit, or the newest, or else the
+        newest speed; for the reader to clear.
     """
 
     def __init__(self) -> None:
@@ -84,13 +46,18 @@ class RunRecord:
         self.speeds = 0
         self.news: RunPoint | None = None
         self._joining = Joining(PARTS)
+        self._measured: dict[int, Mapping[str, Sequence[float]]] = {}
         self._begin = 0
 
-    def take(self, stamp: int, part: str, value: Any) -> None:
+    def take(self, stamp: int, part: str, value: Any) -> RunPoint | None:
         """Take what came on one of the topics in `PARTS` with a stamp [ns].
 
-        The value is a speed [rad/s], greatest and mean eccentricities by damper, or amplitudes
-        [m] by damper.
+        The value is a speed [rad/s], eccentricities by damper, the greatest and that on the other
+        branch, or amplitudes [m] by damper.
+
+        Returns
+        -------
+        The prediction, if this completes it.
         """
         if part == "speed":
             self._begin = self._begin if self.speeds else stamp
@@ -98,9 +65,19 @@ class RunRecord:
             if self.news is None or not self.news.dampers:
                 self.news = self._point(stamp, value)
         parts = self._joining.add(stamp, part, value)
-        if parts is not None:
-            self.news = self._point(stamp, **parts)
-            self.points.append(self.news)
+        if parts is None:
+            return None
+        point = self._point(stamp, **parts, measured=self._measured.pop(stamp, _NOTHING))
+        self.points.append(point)
+        if self.news is None or point.measured or not self.news.measured:
+            self.news = point
+        return point
+
+    def measure(self, stamp: int, amplitudes: Mapping[str, Sequence[float]]) -> None:
+        """Take the measured amplitudes [m] by damper, before the prediction with their stamp."""
+        self._measured[stamp] = amplitudes
+        if len(self._measured) > _UNPAIRED:
+            del self._measured[next(iter(self._measured))]
 
     def _point(
         self,
@@ -108,13 +85,14 @@ class RunRecord:
         speed: float,
         eccentricity: Mapping[str, tuple[float, float]] = _NOTHING,
         harmonics: Mapping[str, Sequence[float]] = _NOTHING,
+        measured: Mapping[str, Sequence[float]] = _NOTHING,
     ) -> RunPoint:
-        """Return a speed and what was predicted at it."""
+        """Return a speed and what was predicted and measured at it."""
         dampers = {
-            name: DamperPoint(greatest, mean, tuple(harmonics.get(name, ())))
-            for name, (greatest, mean) in eccentricity.items()
+            name: DamperPoint(*both, tuple(harmonics.get(name, ())), tuple(measured.get(name, ())))
+            for name, both in eccentricity.items()
         }
-        return RunPoint((stamp - self._begin) * 1e-9, speed / RPM, dampers)
+        return RunPoint(stamp, (stamp - self._begin) * 1e-9, speed / RPM, dampers)
 
     @property
     def dampers(self) -> list[str]:
@@ -145,6 +123,11 @@ class RunRecord:
         differences = np.abs(up[:, 1] - np.interp(up[:, 0], *down.T))
         largest = int(np.argmax(differences))
         return float(differences[largest]), float(up[largest, 0])
+
+    def disagreements(self, damper: str) -> Array:
+        """Return how far measured orbits were from those predicted, see `DamperPoint`, (n,)."""
+        found = (p.dampers[damper].disagreement for p in self.points if damper in p.dampers)
+        return np.array([one for one in found if math.isfinite(one)])
 
     def _moving(self, damper: str, direction: int) -> Iterator[tuple[float, float]]:
         """Yield speed and eccentricity where the speed has just changed in a direction."""

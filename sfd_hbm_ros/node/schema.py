@@ -11,6 +11,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from sfd_hbm_ros.machine import Damper, Machine, Unbalance
 from sfd_hbm_ros.machine.errors import show
 from sfd_hbm_ros.machine.rules import Rule
+from sfd_hbm_ros.response.alarm_settings import AlarmSettings
 
 Value = bool | int | float | str
 
@@ -95,21 +96,47 @@ class Spec:
         return math.isfinite(self.least)
 
 
+def _spec(part: object, name: str, key: str, rule: Rule) -> Spec:
+    """Return the parameter of one entry of a part, to which it leaves what that may be."""
+    return Spec(name, getattr(part, key), f"{rule.about}: {rule.allowed}")
+
+
+_CURVE_HANG = "time without a new point of the curve after which its process is replaced"
+
+_OIL_GRADE = "ISO viscosity grade of the oil whose temperature arrives, 0 for none"
+_OIL_VISCOSITY = "kinematic viscosity of an oil without a grade at {} deg C, 0 for none"
+_MEASURED_WARN = "difference of the measured orbit from the predicted one from which to warn"
+
 SCHEMA = (
     Spec(
         "machine_file",
         "",
         "path of the machine file; it can be changed while the node is unconfigured",
     ),
+    Spec("state_file", "", "path of the file that outlives a restart, empty for none; as above"),
     Spec("frame_id", "rotor", "frame of x and y in the headers of what is published"),
     Spec("harmonics", 7, "highest harmonic of the speed in the prediction", "", 1, 31),
     Spec("publish_rate", 100.0, "most predictions a second", "Hz", 0.1, 1000.0),
     Spec("stale_after", 1.0, "age of the last speed that ends the predictions", "s", 0.05, 3600.0),
+    Spec("speed.min", 10.0, "lowest speed of the response curve", "rad/s", 0.1, 1e5),
+    Spec("speed.max", 1000.0, "highest speed of the response curve", "rad/s", 0.1, 1e5),
+    Spec("curve.detached", True, "whether to look for branches that no run-up meets, too"),
+    Spec("curve.hang_after", 60.0, _CURVE_HANG, "s", 1.0, 3600.0),
+    Spec("curve.attempts", 3, "attempts at a curve before it is given up", "", 1, 100),
+    Spec("oil.grade", 0, _OIL_GRADE, "", 0, 1500),
+    Spec("oil.viscosity_40", 0.0, _OIL_VISCOSITY.format(40), "mm2/s", 0.0, 1e5),
+    Spec("oil.viscosity_100", 0.0, _OIL_VISCOSITY.format(100), "mm2/s", 0.0, 1e5),
+    Spec("oil.density", 865.0, "density of the oil at 40 deg C", "kg/m3", 500.0, 2000.0),
+    Spec("measured.warn", 0.5, _MEASURED_WARN, "of the orbit", 0.01, 2.0),
     Spec(
         "autostart",
         True,
         "whether the node configures and activates itself at the start",
         read_only=True,
+    ),
+    *(
+        _spec(AlarmSettings(), f"alarm.{key}", key, rule)
+        for key, rule in AlarmSettings.rules.items()
     ),
 )
 
@@ -126,8 +153,3 @@ def machine_schema(machine: Machine) -> Iterator[Spec]:
         for key in ("magnitude", "phase"):
             yield _spec(unbalance, f"{unbalance.where}.{key}", key, Unbalance.rules[key])
     yield _spec(machine, "gravity", "gravity", Machine.rules["gravity"])
-
-
-def _spec(part: object, name: str, key: str, rule: Rule) -> Spec:
-    """Return the parameter of one entry of the machine file."""
-    return Spec(name, getattr(part, key), f"{rule.about}: {rule.allowed}")

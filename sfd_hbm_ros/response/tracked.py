@@ -4,7 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from sfd_hbm_ros.hbm import Solution
+import numpy as np
+
+from sfd_hbm_ros.hbm import HarmonicBalance, Outcome, Solution
+from sfd_hbm_ros.hbm.solution import JournalMotion
 from sfd_hbm_ros.response.place import Place
 
 
@@ -65,3 +68,13 @@ def branch_name(solution: Solution, others: Sequence[Place]) -> BranchName:
     if below == len(others):
         return BranchName.UPPER
     return BranchName.MIDDLE if below else BranchName.LOWER
+
+
+def no_solution(balance: HarmonicBalance, speed: float, message: str) -> Solution:
+    """A solution that says why there is none."""
+    nowhere = np.full((balance.harmonics.rows, 2), np.nan)
+    journals = {
+        damper.name: JournalMotion(damper.name, damper.clearance, balance.harmonics, nowhere)
+        for damper in balance.machine.dampers
+    }
+    return Solution(speed, balance.harmonics, Outcome.STALLED, message, (), journals)

@@ -12,13 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sfd_hbm_ros.hbm import HarmonicBalance, Outcome, Solution, solve
-from sfd_hbm_ros.hbm.solution import JournalMotion
+from sfd_hbm_ros.hbm import HarmonicBalance, Solution, solve
 from sfd_hbm_ros.response.curve import ResponseCurve
 from sfd_hbm_ros.response.following import Followed, follow, holds
 from sfd_hbm_ros.response.guide import Guide
 from sfd_hbm_ros.response.place import Place
-from sfd_hbm_ros.response.tracked import BranchName, Tracked, branch_name
+from sfd_hbm_ros.response.tracked import BranchName, Tracked, branch_name, no_solution
 from sfd_hbm_ros.response.way import Way
 
 _BESIDE = (0.97, 1.03)  # of a speed, from where a response is followed to it that no guess finds
@@ -64,6 +63,16 @@ class Tracker:
     def current(self) -> bool:
         """Whether there is a curve, and it is that of the present machine."""
         return self._guide.current
+
+    @property
+    def guide(self) -> Guide:
+        """The machine, and the curve that guides it."""
+        return self._guide
+
+    @property
+    def place(self) -> Place | None:
+        """Where on the curve the machine is; None where that is not known."""
+        return self._last.place if self._last else None
 
     def change(self, balance: HarmonicBalance) -> None:
         """Go on with other loads, parameters or harmonics of the machine."""
@@ -118,7 +127,7 @@ class Tracker:
                 self._last = point
                 return self._tracked(point)
         except Exception as error:  # a speed or a machine beyond what numbers can hold
-            return Tracked(_no_solution(self._guide.balance, speed, str(error)))
+            return Tracked(no_solution(self._guide.balance, speed, str(error)))
 
     def _advanced(self, speed: float) -> _Point:
         if self._last is None:
@@ -213,13 +222,3 @@ class Tracker:
         solution = self._guide.solved(place, beside, known)
         self._beside = (place, solution) if solution else None
         return solution
-
-
-def _no_solution(balance: HarmonicBalance, speed: float, message: str) -> Solution:
-    """A solution that says why there is none."""
-    nowhere = np.full((balance.harmonics.rows, 2), np.nan)
-    journals = {
-        damper.name: JournalMotion(damper.name, damper.clearance, balance.harmonics, nowhere)
-        for damper in balance.machine.dampers
-    }
-    return Solution(speed, balance.harmonics, Outcome.STALLED, message, (), journals)

@@ -8,7 +8,7 @@ full matrices and the film's S in closed form (Gunter, Barrett and Allaire 1977 
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.machine import FilmSettings
@@ -80,6 +80,16 @@ def circular_orbits(machine, model, w):
 
     grid = np.concatenate([np.geomspace(1e-6, 0.05, 20), np.linspace(0.06, 0.999, 200)])
     values = np.array([imbalance(e) for e in grid])
+    # two roots between neighbours of the grid, as beside a fold, lie about an extremum
+    sizes = np.abs(values)
+    for i in np.flatnonzero((sizes[1:-1] < sizes[:-2]) & (sizes[1:-1] < sizes[2:])) + 1:
+        if values[i - 1] * values[i] > 0.0 and values[i] * values[i + 1] > 0.0:
+            sign, bounds = np.sign(values[i]), (grid[i - 1], grid[i + 1])
+            nearest = minimize_scalar(lambda e, s=sign: s * imbalance(e), bounds=bounds)
+            at = int(np.searchsorted(grid, nearest.x))
+            grid = np.insert(grid, at, nearest.x)
+            values = np.insert(values, at, sign * nearest.fun)
+            break
     roots = [
         brentq(imbalance, grid[i], grid[i + 1], xtol=1e-15, rtol=1e-14)
         for i in np.flatnonzero(values[:-1] * values[1:] < 0)

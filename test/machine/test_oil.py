@@ -91,11 +91,19 @@ def test_viscosity_falls_with_temperature_and_rises_with_the_grade(grade):
         (lambda: Oil(math.nan, 5.0, 870.0), r"oil.viscosity_40 must be .* \[mm2/s\] .* not nan"),
         (lambda: Oil(32.0, 1.9, 870.0), r"oil.viscosity_100 must be .* of at least 2, not 1.9"),
         (lambda: Oil(32.0, 32.0, 870.0), r"oil.viscosity_100 must be below .* 32.0 mm2/s, not 32"),
+        (lambda: Oil.configured(32, 0.0, 5.4, 870.0), r"oil.grade must be 0 .* given, not 32"),
+        (lambda: Oil.configured(0, 32.0, 0.0, 870.0), r"oil.viscosity_100 must be .* not 0.0"),
     ],
 )
 def test_oils_that_cannot_be(make, sentence):
     with pytest.raises(MachineError, match=sentence):
         make()
+
+
+def test_an_oil_is_configured_by_its_grade_or_by_two_viscosities():
+    assert Oil.configured(46, 0.0, 0.0, 870.0) == Oil.iso_vg(46, 870.0)
+    assert Oil.configured(0, 25.0, 5.0, 980.0) == Oil(25.0, 5.0, 980.0)
+    assert Oil.configured(0, 0.0, 0.0, 870.0) is None
 
 
 @pytest.mark.parametrize("celsius", [-20.1, 150.1, math.nan, math.inf, -math.inf])

@@ -22,15 +22,17 @@ from rclpy.context import Context  # noqa: E402
 from rclpy.duration import Duration  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.parameter import Parameter, parameter_value_to_python  # noqa: E402
-from rclpy.qos import LivelinessPolicy, QoSProfile  # noqa: E402
+from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile  # noqa: E402
 from rclpy.time import Time  # noqa: E402
-from sensor_msgs.msg import JointState  # noqa: E402
+from sensor_msgs.msg import JointState, PointCloud2  # noqa: E402
 from std_msgs.msg import Header  # noqa: E402
+from std_srvs.srv import Trigger  # noqa: E402
 
 from sfd_hbm_ros.node.messages import speed_message  # noqa: E402
 
-LIMIT = 30.0  # s; joining a node alone takes up to 3 s on an idle computer
+LIMIT = 60.0  # s; joining a node alone takes up to 3 s on an idle computer
 Numbers = dict[str, float]
+Strings = dict[str, str]
 # What a supervisor may demand: it hears of a node that is stuck as of one that has died.
 HEARTBEAT = QoSProfile(
     depth=1,
@@ -38,6 +40,7 @@ HEARTBEAT = QoSProfile(
     liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
     liveliness_lease_duration=Duration(seconds=1.0),
 )
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Graph:
@@ -101,6 +104,8 @@ class Remote:
         self.eccentricity: dict[int, JointState] = {}
         self.harmonics: dict[int, JointState] = {}
         self.statuses: dict[str, DiagnosticStatus] = {}
+        self.warnings: list[tuple[int, DiagnosticStatus]] = []
+        self.curves: list[PointCloud2] = []
         self.reports = 0
         self.heartbeats = 0
         node = graph.node
@@ -110,6 +115,8 @@ class Remote:
         graph.collect(JointState, f"{name}/harmonics", self._keep(self.harmonics))
         graph.collect(DiagnosticArray, "/diagnostics", self._note)
         graph.collect(Header, f"{name}/heartbeat", self._count, HEARTBEAT)
+        graph.collect(DiagnosticArray, f"{name}/jump_warning", self._warn, LATCHED)
+        graph.collect(PointCloud2, f"{name}/response_curve", self.curves.append, LATCHED)
 
     def _keep(self, kept: dict[int, JointState]) -> Callable[[JointState], None]:
         return lambda message: kept.update({nanoseconds(message.header): message})
@@ -118,6 +125,9 @@ class Remote:
         if message.status[0].name.startswith(f"{self.name[1:]}: "):
             self.reports += 1
             self.statuses = {status.name.split(": ")[1]: status for status in message.status}
+
+    def _warn(self, message: DiagnosticArray) -> None:
+        self.warnings.append((nanoseconds(message.header), message.status[0]))
 
     def _count(self, message: Header) -> None:
         self.heartbeats += 1
@@ -172,6 +182,28 @@ class Remote:
         status: DiagnosticStatus = self.graph.until(found, f"{subject} says {part!r}", between)
         return status
 
+    def until_warning(self, level: bytes, part: str = "", speed: float = 0.0) -> Strings:
+        """Wait until the warning has a level and its message a part; return its values.
+
+        A speed [rad/s] other than 0 is published meanwhile.
+        """
+        seen = len(self.warnings)
+
+        def found() -> DiagnosticStatus | None:
+            new = (status for _, status in self.warnings[seen:])
+            return next((one for one in new if one.level == level and part in one.message), None)
+
+        def between() -> None:
+            if speed:
+                self.send(speed, self.now())
+
+        return strings(self.graph.until(found, f"warning {level!r} {part!r}", between))
+
+    def order(self, service: str) -> tuple[bool, str]:
+        """Call a service without arguments and return its answer."""
+        response = self.graph.call(Trigger, f"{self.name}/{service}", Trigger.Request())
+        return response.success, response.message
+
     def until_dropped(self, source: str, number: int) -> None:
         """Wait until so many inputs are said to have been dropped from a source."""
 
@@ -219,6 +251,11 @@ class Remote:
     def restart(self) -> None:
         """Forget loads, changed values and the last solution."""
         assert self.change_state("deactivate", "cleanup", "configure", "activate") == [True] * 4
+
+
+def strings(status: DiagnosticStatus) -> Strings:
+    """Return the values of a status by their keys."""
+    return {pair.key: pair.value for pair in status.values}
 
 
 def numbers(message: JointState) -> Numbers:

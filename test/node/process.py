@@ -6,9 +6,22 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
+
+import yaml
 
 ROOT = Path(__file__).parents[2]
 PAPER_ROTOR = ROOT / "config" / "paper_rotor.yaml"
+
+
+def parameters_of(file: Path) -> dict[str, Any]:
+    """Return the parameters that a file gives to every node, by their dotted names."""
+    nested = yaml.safe_load(file.read_text())["/**"]["ros__parameters"]
+    return {
+        f"{name}.{key}" if key else name: value
+        for name, entry in nested.items()
+        for key, value in (entry.items() if isinstance(entry, dict) else [("", entry)])
+    }
 
 
 class NodeProcess:

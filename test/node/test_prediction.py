@@ -52,20 +52,25 @@ def test_loads_outlast_a_change_of_the_machine():
     np.testing.assert_allclose(predicted(model, 300.0), expected(loaded, 300.0, 4), atol=1e-15)
 
 
-def test_the_last_solution_is_the_start_and_can_be_forgotten():
+def test_the_same_load_again_changes_nothing():
     model = Model(PAPER, 3)
-    first = model.predict(300.0)
-    assert first.iterations > 0
+    load = model.checked_load("disk_3", (0.0, -90.0))
+    assert model.add(load)
+    assert not model.add(load)
+    assert model.add(model.checked_load("disk_3", (0.0, -91.0)))
+
+
+def test_the_last_solution_is_the_start():
+    model = Model(PAPER, 3)
+    assert model.predict(300.0).iterations > 0
     assert model.predict(300.0).iterations == 0
-    model.forget()
-    assert model.predict(300.0).iterations == first.iterations
 
 
 def test_failures_are_told_and_leave_no_trace():
     model = Model(PAPER, 3)
     failure = model.predict(1e200)
     assert failure.failed
-    assert "the solver gave up: OverflowError" in failure.message
+    assert "the solver gave up: " in failure.message
     assert np.isnan(failure.journals["damper_1"].coefficients).all()
     np.testing.assert_array_equal(predicted(model, 300.0), expected(PAPER, 300.0))
 

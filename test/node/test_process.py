@@ -9,7 +9,7 @@ import yaml
 from sfd_hbm_ros.machine import read_machine
 
 from .graph import Remote
-from .process import PAPER_ROTOR, ROOT
+from .process import PAPER_ROTOR, ROOT, parameters_of
 
 OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"
 
@@ -45,12 +45,12 @@ def test_namespace_remapping_and_parameter_file(graph, start):
     remote.meet()
     eccentricity, _ = remote.predict(300.0)
     assert 0.0 < eccentricity["damper_1/max"] < 1.0
-    assert set(remote.statuses) == {"Model", "Solver", "Inputs"}
+    assert set(remote.statuses) == {"Jump", "Model", "Solver", "Inputs"}
     machine = read_machine(PAPER_ROTOR)
     assert {status.hardware_id for status in remote.statuses.values()} == {machine.name}
-    (file,) = yaml.safe_load((ROOT / "config" / "predictor.yaml").read_text()).values()
-    names = [name for name in file["ros__parameters"] if name != "machine_file"]
-    assert remote.get(*names) == [file["ros__parameters"][name] for name in names]
+    given = parameters_of(ROOT / "config" / "predictor.yaml")
+    del given["machine_file"]
+    assert remote.get(*given) == list(given.values())
 
 
 def test_parameter_file_as_people_write_it(graph, start, tmp_path):

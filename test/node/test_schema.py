@@ -3,14 +3,13 @@
 import math
 
 import pytest
-import yaml
 
 pytest.importorskip("rclpy")
 
 from sfd_hbm_ros.machine import get, read_machine
 from sfd_hbm_ros.node.schema import SCHEMA, ParameterError, Spec, machine_schema
 
-from .process import PAPER_ROTOR, ROOT
+from .process import PAPER_ROTOR, ROOT, parameters_of
 
 RATE = Spec("rate", 100.0, "messages a second", "Hz", 0.1, 1000.0)
 ORDER = Spec("order", 7, "highest order", "", 1, 31)
@@ -76,7 +75,7 @@ def test_machine_values_go_by_their_place_in_the_machine_file():
 
 def test_the_parameter_file_holds_every_parameter_with_its_default():
     text = (ROOT / "config" / "predictor.yaml").read_text()
-    given = yaml.safe_load(text)["/**"]["ros__parameters"]
+    given = parameters_of(ROOT / "config" / "predictor.yaml")
     assert given == {spec.name: spec.default for spec in SCHEMA}
     for spec in SCHEMA:
         if math.isfinite(spec.least):

@@ -9,9 +9,13 @@ import time
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from std_srvs.srv import Trigger
 
-from .graph import JointState, Parameter, SetParametersAtomically, nanoseconds
-from .process import ROOT
+from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
+from sfd_hbm_ros.machine import override, read_machine
+
+from .graph import JointState, Parameter, SetParametersAtomically, nanoseconds, numbers
+from .process import PAPER_ROTOR, ROOT
 
 RPM = math.pi / 30.0  # rad/s
 LIMIT = 30.0  # s
@@ -111,6 +115,12 @@ def test_signals_end_it_cleanly(graph, simulate, number, heard):
         ("from_rpm:=.nan", "from_rpm must be a finite number [rpm] above 0 and below 1e+06, not"),
         ("hold:=[]", "hold must be a finite number [s] of at least 0 and below 1e+06, not"),
         ("subscribers:=1.5", "subscribers must be an integer of at least 0, not 1.5"),
+        ("dropout:=1", "dropout must be a finite number of at least 0 and below 1, not 1"),
+        ("source:=film", "source must be one of: branch, integration, not 'film'"),
+        ("harmonics:=40", "harmonics must be at most 31, not 40"),
+        ("machine_file:=none.yaml", "none.yaml"),
+        (f"machine_file:={PAPER_ROTOR} gravity:=3", "gravity must be true or false, not 3"),
+        (f"machine_file:={PAPER_ROTOR} disks.disk_9.mass:=3", "disks.disk_9"),
         ("use_sim_time:=3", "Trying to set parameter 'use_sim_time' to '3'"),
     ],
 )
@@ -134,4 +144,78 @@ def test_parameters_stay_and_unknown_ones_are_pointed_out(graph, simulate):
     assert not answer.successful
     assert "read-only" in answer.reason
     assert "form_rpm is unknown (did you mean from_rpm?)" in simulator.said()
+    assert simulator.stop(signal.SIGINT) == 0
+
+
+@pytest.fixture(scope="module")
+def steady(graph, start_node):
+    """A jumping machine at 4 100 rpm, its measured orbits by their stamps and its speeds."""
+    machine = f"machine_file:={PAPER_ROTOR} unbalance.disk_2.magnitude:=5.039e-4 harmonics:=3"
+    run = "from_rpm:=3900 to_rpm:=4100.0 rpm_per_second:=1000 hold:=1000 orbit_rate:=20"
+    simulator = start_node(
+        "simulator", "--ros-args", "-r", "__ns:=/steady", *parameters(f"{machine} {run}")
+    )
+    orbits: dict[int, JointState] = {}
+    speeds: set[int] = set()
+    graph.collect(
+        JointState,
+        "/steady/predictor/measured",
+        lambda message: orbits.update({nanoseconds(message.header): message}),
+    )
+    graph.collect(
+        JointState,
+        "/steady/predictor/speed",
+        lambda message: speeds.add(nanoseconds(message.header)),
+    )
+    graph.until(lambda: len(orbits) > 20, "the run-up is over")
+    assert orbits.keys() - speeds <= {max(orbits)}, "an orbit has the stamp of a speed"
+    yield orbits
+    assert simulator.stop(signal.SIGINT) == 0
+    assert "Traceback" not in simulator.said()
+
+
+def amplitude(orbits: dict[int, JointState]) -> float:
+    return numbers(orbits[max(orbits)])["damper_1/x/1x/amplitude"]
+
+
+def test_a_machine_is_measured_and_thrown_onto_its_other_branch(graph, steady):
+    """A run-up meets the upper of the two stable responses that `solve` can end on."""
+    machine = override(read_machine(PAPER_ROTOR), "unbalance.disk_2.magnitude", 5.039e-4)
+    balance = HarmonicBalance(machine, Harmonics(3))
+    upper = solve(balance, 3900.0 * RPM)
+    for rpm in np.arange(3910.0, 4101.0, 10.0):
+        upper = solve(balance, rpm * RPM, upper)
+    lower = solve(balance, 4300.0 * RPM)
+    for rpm in np.arange(4290.0, 4099.0, -10.0):
+        lower = solve(balance, rpm * RPM, lower)
+    high, low = (
+        math.hypot(journal.cos[1, 0], journal.sin[1, 0])
+        for journal in (upper.journals["damper_1"], lower.journals["damper_1"])
+    )
+    assert high > 2.0 * low
+    assert amplitude(steady) == pytest.approx(high, rel=1e-6)
+    for expected in (low, high):
+        answer = graph.call(Trigger, "/steady/simulator/jump", Trigger.Request())
+        assert answer.success
+        assert "thrown from eccentricity" in answer.message
+        came = len(steady)
+        graph.until(lambda came=came: len(steady) > came + 2, "orbits are measured")
+        assert amplitude(steady) == pytest.approx(expected, rel=1e-6)
+
+
+def test_without_a_machine_there_is_no_jump(graph, simulate):
+    simulator = simulate("/bare", "gravity:=true")
+    answer = graph.call(Trigger, "/bare/simulator/jump", Trigger.Request())
+    assert not answer.success
+    assert answer.message == "no machine is simulated: machine_file is empty"
+    assert "parameter gravity needs a machine_file; it has no effect" in simulator.said()
+    assert simulator.stop(signal.SIGINT) == 0
+
+
+def test_integration_that_lags_behind_says_so(graph, simulate):
+    """At 20 000 rpm a revolution lasts 3 ms, less than its integration."""
+    run = "from_rpm:=19000 to_rpm:=20000 rpm_per_second:=1e3 hold:=1000 subscribers:=0"
+    machine = f"machine_file:={PAPER_ROTOR} harmonics:=1 source:=integration"
+    simulator = simulate("/lagging", f"{run} {machine}")
+    graph.until(lambda: "the integration cannot keep up" in simulator.said(), "it says so")
     assert simulator.stop(signal.SIGINT) == 0

@@ -42,6 +42,23 @@ def test_equal_speeds_make_a_constant_speed() -> None:
     assert [steady.speed(time) for time in (0.0, 2.5, 5.0)] == [pytest.approx(100.0 * math.pi)] * 3
 
 
+def test_runs_follow_each_other() -> None:
+    two = SpeedProfile(runs=2)
+    assert two.duration == pytest.approx(68.0)
+    times = np.linspace(0.0, 34.0, 100, endpoint=False)
+    for time in times:
+        assert two.speed(34.0 + time) == pytest.approx(PROFILE.speed(time), rel=1e-9)
+    expected, _ = quad(two.speed, 0.0, 50.0, points=[16.0, 18.0, 34.0, 50.0])
+    assert two.angle(50.0) == pytest.approx(expected, rel=1e-12)
+    assert two.speed(70.0) == pytest.approx(2000.0 * RPM)
+
+
+@pytest.mark.parametrize("time", [0.4, 15.9, 17.0, 33.5, 40.0])
+def test_time_belongs_to_its_angle(time: float) -> None:
+    profile = SpeedProfile(runs=2)
+    assert profile.time(profile.angle(time), time - 0.02) == pytest.approx(time, rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("key", "value", "unit"),
     [

@@ -7,6 +7,7 @@ from typing import Any, Literal, cast
 
 from sfd_hbm_ros.machine import Machine, MachineError, override_all, read_machine
 from sfd_hbm_ros.machine.document import read_document
+from sfd_hbm_ros.machine.shipped import shipped
 
 Range = tuple[float, float]
 Kind = Literal["response", "orbit", "spectrum"]
@@ -87,18 +88,14 @@ class Cases:
 
 
 def cases_file() -> Path:
-    """The file of the cases, in the source tree or where the package is installed.
+    """The file of the cases.
 
     Raises
     ------
     FileNotFoundError
-        If it is in neither.
+        If it is not installed beside the package.
     """
-    for parent in Path(__file__).resolve().parents:
-        for folder in (parent / "config", parent / "share" / "sfd_hbm_ros" / "config"):
-            if (folder / _FILE).is_file():
-                return folder / _FILE
-    raise FileNotFoundError(f"{_FILE} is not installed beside the package")
+    return shipped(_FILE)
 
 
 def read_cases(path: Path) -> Cases:

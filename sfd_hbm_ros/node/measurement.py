@@ -1,0 +1,111 @@
+"""Measured orbits: they settle the branch, and show how well the model agrees."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import deque
+from dataclasses import replace
+
+from rclpy.lifecycle import LifecycleNode
+from rclpy.time import Time
+from sensor_msgs.msg import JointState
+
+from sfd_hbm_ros.node import messages
+from sfd_hbm_ros.node.diagnostics import Level, Status
+from sfd_hbm_ros.node.dropping import dropping
+from sfd_hbm_ros.node.inputs import Feed, InputError
+from sfd_hbm_ros.node.measured_messages import read_measured
+from sfd_hbm_ros.node.operation import Operation
+from sfd_hbm_ros.node.parameters import Parameters
+from sfd_hbm_ros.node.prediction import Prediction
+from sfd_hbm_ros.response.settling import Judgement, Settling
+from sfd_hbm_ros.response.tracked import Tracked
+
+_QUEUE = 10
+_KEPT = 100  # predictions, among which that of a measured orbit's time is looked for
+
+
+class Measurement:
+    """Compares every measured orbit with the prediction whose stamp is nearest to its own.
+
+    Parameters
+    ----------
+    node : LifecycleNode
+        The node.
+    parameters : Parameters
+        Its parameters.
+    operation : Operation
+        Who predicts.
+
+    Attributes
+    ----------
+    feed : Feed
+        What arrived, and what it said.
+    """
+
+    def __init__(self, node: LifecycleNode, parameters: Parameters, operation: Operation) -> None:
+        self._node = node
+        self._parameters = parameters
+        self._operation = operation
+        self._predicted: deque[tuple[int, Tracked]] = deque(maxlen=_KEPT)
+        self._settling = Settling()
+        self._publisher = node.create_lifecycle_publisher(JointState, "~/residual", _QUEUE)
+        topic = node.create_subscription(JointState, "~/measured", self._take, _QUEUE)
+        self.feed: Feed[Judgement] = Feed(topic.topic_name)
+        operation.after_prediction.append(self._remember)
+        operation.after_change.append(self._forget)
+
+    def added_to(self, status: Status) -> Status:
+        """Return the status of the model with how it agrees with what is measured."""
+        judgement = self.feed.value
+        age = self.feed.age(time.monotonic())
+        if judgement is None or age > self._parameters["stale_after"]:
+            return status
+        disagreement = judgement.agreement.disagreement
+        values = {**status.values, "measured: disagreement": f"{disagreement:.3g}"}
+        message = f"{status.message}; {judgement.message}"
+        level = Level.WARN if disagreement >= self._parameters["measured.warn"] else Level.OK
+        return replace(status, level=max(status.level, level), message=message, values=values)
+
+    def _take(self, message: JointState) -> None:
+        """Compare an orbit with its prediction, and settle the branch where it tells."""
+        with dropping(self._node, self.feed):
+            measured = read_measured(message)
+            clock = int(self._node.get_clock().now().nanoseconds)
+            given = messages.read_stamp(message.header)
+            tracked = self._nearest(given or clock)
+            model = self._operation.model
+            assert model is not None  # as there are predictions
+            judgement = self._settling.judge(measured, tracked, model.tracker.settled)
+            if math.isnan(judgement.agreement.disagreement):
+                raise InputError(judgement.message)
+            stamp = self.feed.accept(judgement, given, clock, time.monotonic())
+            residuals = judgement.agreement.residuals
+            header = Time(nanoseconds=stamp), self._parameters["frame_id"]
+            self._publisher.publish(messages.numbers_message(*header, residuals))
+            if judgement.settles is not None:
+                model.tracker.settle(judgement.settles)
+                self._forget()
+                self._operation.predict_again()
+
+    def _nearest(self, stamp: int) -> Tracked:
+        """The operating point at a time [ns]."""
+        silence = self._operation.silence
+        if silence:
+            raise InputError(f"nothing is predicted, as {silence}")
+        if not self._predicted:
+            raise InputError("there is no prediction of the machine as it is to compare it with")
+        at, tracked = min(self._predicted, key=lambda one: abs(one[0] - stamp))
+        apart = abs(at - stamp) * 1e-9
+        if apart > self._parameters["stale_after"]:
+            raise InputError(f"its stamp is {apart:.3g} s from that of the nearest prediction")
+        return tracked
+
+    def _remember(self, prediction: Prediction, stamp: int) -> None:
+        if prediction.tracked is not None:
+            self._predicted.append((stamp, prediction.tracked))
+
+    def _forget(self) -> None:
+        """Compare no orbit with what was predicted of a machine or on a branch that was."""
+        self._predicted.clear()

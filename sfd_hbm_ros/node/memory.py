@@ -1,0 +1,167 @@
+"""The state file: what the predictor knows of its machine outlives its own end."""
+
+from __future__ import annotations
+
+import os
+import time
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
+from dataclasses import replace
+
+from rclpy.lifecycle import LifecycleNode
+
+from sfd_hbm_ros.node.diagnostics import Level, Status
+from sfd_hbm_ros.node.operation import Operation
+from sfd_hbm_ros.node.parameters import Parameters
+from sfd_hbm_ros.node.prediction import Model, Prediction
+from sfd_hbm_ros.node.watch import Watch
+from sfd_hbm_ros.response.jump_alarm import JumpAlarm
+from sfd_hbm_ros.response.state import State, restore
+from sfd_hbm_ros.response.state_file import StateFileError, load_state, save_state
+
+_PERIOD = 1.0  # s between two savings without a change worth more
+
+
+class Memory:
+    """Saves and restores the branch that the machine is on, and its alarm.
+
+    A disk may be slow, so a thread writes; the newest state waits where it is still at the last.
+
+    Parameters
+    ----------
+    node : LifecycleNode
+        The node.
+    parameters : Parameters
+        Its parameters.
+    operation : Operation
+        Who follows the machine.
+    watch : Watch
+        Who has the alarm.
+    """
+
+    def __init__(
+        self, node: LifecycleNode, parameters: Parameters, operation: Operation, watch: Watch
+    ) -> None:
+        self._node = node
+        self._parameters = parameters
+        self._operation = operation
+        self._watch = watch
+        self._state: State | None = None
+        self._path = ""
+        self._refused = ""
+        self._failed = ""
+        self._saved: tuple[object, ...] = ()
+        self._saved_at = 0.0
+        self._thread = ThreadPoolExecutor(1)
+        self._writing: Future[None] | None = None
+        operation.after_prediction.append(self._take)
+        watch.after_change.append(self._look)
+
+    def restore(self, model: Model) -> None:
+        """Begin with what is in the state file; one that is of no use is reported."""
+        self._path, self._state = self._parameters["state_file"], None
+        self._refused = self._failed = ""
+        if not self._path:
+            return
+        try:
+            self._state = load_state(self._path, model.machine)
+            if self._state is not None:
+                self._restore(model, self._state)
+        except Exception as error:  # whatever is in it, the node goes on without
+            self._refused, self._state = str(error), None
+            self._keep_refused()
+            self._node.get_logger().warning(f"state file {self._refused}")
+
+    def save(self) -> None:
+        """Save the state now, and wait until that is done."""
+        self._collect(wait=True)
+        self._write()
+        self._collect(wait=True)
+
+    def release(self) -> None:
+        """Save the state of the machine that is given up."""
+        self.save()
+        self._path, self._state = "", None
+        self._refused = self._failed = ""
+
+    def added_to(self, status: Status) -> Status:
+        """Return the status of the model with how its memory fares."""
+        values = {**status.values, "state_file": self._path}
+        problem = "; ".join(part for part in (self._refused, self._failed) if part)
+        if not problem:
+            return replace(status, values=values)
+        values["state_file: problem"] = problem
+        message = f"{status.message}; state file {problem}"
+        return replace(status, level=max(status.level, Level.WARN), message=message, values=values)
+
+    def _restore(self, model: Model, state: State) -> None:
+        """Go on from a state."""
+        watch = self._watch
+        watch.alarm = JumpAlarm.from_dict(watch.alarm.settings, state.alarm, time.monotonic())
+        if not state.settled:
+            return
+        restored = restore(state, model.balance())
+        if restored.same:
+            model.tracker.settle(restored.solution)
+            return
+        self._refused = f"{self._path}: the machine has changed, so that its branch is not known"
+        self._node.get_logger().warning(f"state file {self._refused}")
+
+    def _keep_refused(self) -> None:
+        """Put the refused file aside, lest it be overwritten."""
+        with suppress(OSError):  # that it cannot be written will be told
+            if os.path.isfile(self._path):
+                os.replace(self._path, f"{self._path}.refused")
+
+    def _take(self, prediction: Prediction, stamp: int) -> None:
+        """Remember a prediction, and save it if it is time."""
+        model = self._operation.model
+        if model is None or prediction.tracked is None:
+            return
+        solution = prediction.tracked.solution
+        self._state = State(
+            solution.speed,
+            solution.harmonics,
+            solution.coefficients,
+            model.tracker.settled,
+            stamp,
+            {},  # the alarm's, when it is saved
+        )
+        self._look()
+
+    def _look(self) -> None:
+        """Save the state if something important has changed, or a second has passed."""
+        self._collect()
+        if self._writing is not None:
+            return
+        if self._key != self._saved or time.monotonic() - self._saved_at >= _PERIOD:
+            self._write()
+
+    @property
+    def _key(self) -> tuple[object, ...]:
+        """What is saved at once when it changes."""
+        prediction = self._operation.prediction
+        tracked = prediction.tracked if prediction else None
+        settled = self._state.settled if self._state else None
+        return *self._watch.signature, settled, tracked.branch if tracked else None
+
+    def _write(self) -> None:
+        """Have the thread write the state, if there is any."""
+        model, now = self._operation.model, time.monotonic()
+        if not self._path or model is None or self._state is None:
+            return
+        self._saved, self._saved_at = self._key, now
+        state = replace(self._state, alarm=self._watch.alarm.to_dict(now))
+        self._writing = self._thread.submit(save_state, self._path, model.machine, state)
+
+    def _collect(self, wait: bool = False) -> None:
+        """Find out what became of the last writing, if it is done."""
+        if self._writing is None or not (wait or self._writing.done()):
+            return
+        failed = ""
+        try:
+            self._writing.result()
+        except StateFileError as error:
+            failed = str(error)
+            self._node.get_logger().error(f"state file {failed}", throttle_duration_sec=_PERIOD)
+        self._writing, self._failed = None, failed
