@@ -22,7 +22,7 @@ OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"
 UNBALANCE = "unbalance.disk_2.magnitude", 5.039e-4
 BISTABLE = 4100.0 * RPM  # between the jumps at 3985 and 4162 rpm
 FIRST_PREDICTION = 3.0  # s on an idle computer
-LOADED = 10.0  # times longer where the tests' computer has other work, too
+LOADED = 5.0  # times longer where the tests' computer has other work, too
 
 Start = Callable[..., NodeProcess]
 

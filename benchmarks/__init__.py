@@ -1,0 +1,1 @@
+"""Measurements of speed, accuracy and endurance, run by hand."""

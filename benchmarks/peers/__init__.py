@@ -1,0 +1,1 @@
+"""The solver beside others on the same problems; see `benchmarks.peers.__main__`."""
