@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
+from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, Solution
 from sfd_hbm_ros.machine import Machine, override_all
 from sfd_hbm_ros.response.acceleration import AccelerationEstimator
 from sfd_hbm_ros.response.alarm_settings import AlarmSettings, Level
@@ -117,6 +117,7 @@ def time_of_jump(case: Case) -> float:
     place = travel(case.curve, case.place, start).place
     assert place is not None
     [solution] = [one for i, one in solutions_at(place.branch, start) if i == place.index]
+    assert isinstance(solution, Solution)  # not a quasi-periodic response
     integrator = Integrator(balance, max(start, end))
     ramp = Ramp.between(start, end, abs(rate))
     found = observed_jumps(run(integrator, ramp, integrator.start(solution)))

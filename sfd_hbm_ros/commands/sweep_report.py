@@ -45,13 +45,14 @@ def data_of(summary: Summary, path: str | None, seconds: float) -> dict[str, Any
         "hysteresis": None if width is None else width / unit,
         "amplification_factor": summary.amplification_factor,
         "ends": [branch.stop.value for branch in curve.branches],
+        "quasi_periodic": [_reach(branch) for branch in curve.branches if not branch.periodic],
         "detached": [_reach(branch) for branch in curve.detached],
         "seconds": seconds,
     }
 
 
 def _reach(branch: CurveBranch) -> dict[str, list[float]]:
-    """Where a detached branch lies, and where it is stable; not a number where it nowhere is."""
+    """Where a branch lies, and where it is stable; not a number where it nowhere is."""
     rpm, eccentricity, stable = branch.speed / RPM, branch.worst_eccentricity, branch.stable
 
     def span(values: NDArray[np.float64]) -> list[float]:
@@ -83,9 +84,10 @@ def text_of(data: dict[str, Any]) -> str:
         for one in data["instabilities"]
     ]
     lines += [
-        f"detached  {one['speed_rpm'][0]:.2f} to {one['speed_rpm'][1]:.2f} rpm: eccentricity "
+        f"{name}  {one['speed_rpm'][0]:.2f} to {one['speed_rpm'][1]:.2f} rpm: eccentricity "
         f"{one['eccentricity'][0]:.4f} to {one['eccentricity'][1]:.4f}"
-        for one in data["detached"]
+        for name, key in (("quasi-periodic", "quasi_periodic"), ("detached", "detached"))
+        for one in data[key]
     ]
     if data["hysteresis"] is not None:
         lines.append(f"width of the hysteresis {data['hysteresis']:.6g}")

@@ -17,10 +17,12 @@ from sfd_hbm_ros.rotor import ResonanceError
 
 Array = NDArray[np.float64]
 
+ROUNDING = 1e-8
+"""Part of the rotor's forces that a residual may be, where by rounding it falls no further."""
+
 _OUTSIDE = 1.0 - 1e-9  # eccentricity at which the film's forces can no longer be resolved
 _CROWDED = 0.97  # eccentricity beyond which a step that fails shows that no room is left
-_ROUNDING = 1e-8  # part of the rotor's forces that may be rounding, where it falls no further
-_STAGNATION = 0.1  # ratio of successive residuals that shows that
+_STAGNATION = 0.1  # ratio of successive residuals that shows that only rounding is left
 _NUDGE = 1e-9  # of the parameter's range, by which an exact resonance is stepped over
 
 
@@ -139,7 +141,7 @@ class Branch:
         if norm <= self.newton.tolerance * (equations.load or 1.0):
             return True
         forces = float(np.linalg.norm(equations.rotor_force(x)))
-        return norm <= _ROUNDING * forces and norm > _STAGNATION * before
+        return norm <= ROUNDING * forces and norm > _STAGNATION * before
 
     def _point(self, x: Array, value: float, direction: Array, iterations: int) -> Point:
         """A known solution with the tangent that has a positive part along `direction`."""

@@ -52,14 +52,17 @@ class Stability:
     ----------
     multipliers : (m,) complex array
         Floquet multipliers of the reduced rotor, in falling order of magnitude.
+    accuracy : float
+        By how much the magnitude of one may be wrong.
     """
 
     multipliers: ComplexArray
+    accuracy: float = _ROUNDING
 
     @property
     def growth(self) -> float:
-        """How much the worst disturbance grows in a period beyond 1 and rounding."""
-        return float(np.abs(self.multipliers[0])) - 1.0 - _ROUNDING
+        """How much the worst disturbance grows in a period, beyond what may be an error."""
+        return float(np.abs(self.multipliers[0])) - 1.0 - self.accuracy
 
     @property
     def stable(self) -> bool:
@@ -110,9 +113,10 @@ def settled_stability(
 ) -> Stability:
     """Floquet stability from monodromy matrices in more and more steps, until it settles.
 
-    Where the phase of the response is free, one multiplier is 1 and is left aside.
+    Where the phase of the response is free, one multiplier is 1. It is left aside, and tells how
+    accurate the others are: near the clearance the response itself has too few harmonics.
     """
-    leading = np.inf
+    leading, accuracy = np.inf, _ROUNDING
     for steps in (32, 64, 128, 256, 512, 1024, 2048, 4096):
         with np.errstate(over="ignore", invalid="ignore"):
             matrix = monodromy_in(steps)
@@ -120,12 +124,14 @@ def settled_stability(
             continue  # steps too long for so stiff a film
         multipliers = np.linalg.eigvals(matrix).astype(complex)
         if phase_is_free:
-            multipliers = np.delete(multipliers, np.argmin(np.abs(multipliers - 1.0)))
+            errors = np.abs(multipliers - 1.0)
+            multipliers = np.delete(multipliers, np.argmin(errors))
+            accuracy = max(_ROUNDING, float(errors.min()))
         multipliers = _in_falling_order(multipliers)
         before, leading = leading, abs(multipliers[0])
         if abs(leading - before) < min(_SETTLED * leading, max(_EXACT, 0.1 * abs(leading - 1.0))):
             break
-    return Stability(multipliers)
+    return Stability(multipliers, accuracy)
 
 
 def _is_circular(solution: Solution) -> bool:

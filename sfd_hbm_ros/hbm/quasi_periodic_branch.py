@@ -22,6 +22,7 @@ from sfd_hbm_ros.hbm.quasi_periodic import QuasiPeriodicEquations
 from sfd_hbm_ros.hbm.quasi_periodic_response import (
     QuasiPeriodicResponse,
     quasi_periodic_response,
+    standing_response,
 )
 from sfd_hbm_ros.hbm.solution import Solution
 from sfd_hbm_ros.hbm.switching import SwitchedBranch
@@ -67,6 +68,11 @@ class QuasiPeriodicBranch(SwitchedBranch):
         return quasi_periodic_response(family.balance, family.harmonics, point.value, point.x)
 
 
+def has_circular_orbits(balance: HarmonicBalance) -> bool:
+    """Whether a machine is axisymmetric and without gravity and other static loads."""
+    return is_axisymmetric(balance.model) and not balance.model.static_force.any()
+
+
 def quasi_periodic_branch(
     balance: HarmonicBalance,
     circle: Solution,
@@ -99,8 +105,7 @@ def quasi_periodic_branch(
     ValueError
         If the machine's orbits are not circles.
     """
-    model = balance.model
-    if not is_axisymmetric(model) or model.static_force.any():
+    if not has_circular_orbits(balance):
         raise ValueError(
             "quasi-periodic branch: the machine must be axisymmetric, without gravity and static "
             "loads, so that its orbits are circles"
@@ -108,7 +113,7 @@ def quasi_periodic_branch(
     family, root = _departure(balance, circle, harmonics)
     beside = Branch(family, root.x, circle.speed, bounds[1], bounds, options)
     absent = np.ones(root.x.size, dtype=bool)
-    absent[: model.journals.size] = absent[-1] = False
+    absent[: balance.clearances.size] = absent[-1] = False
     for step in _STEPS:
         first = beside.corrected(root, step)
         if first is not None and bounds[0] <= first.value <= bounds[1]:
@@ -128,8 +133,6 @@ def _departure(
     ahead = harmonics.coefficients(1j * amplitudes)  # the same motion a quarter period later
     phase = (ahead / clearances**2).ravel()
     family = QuasiPeriodicFamily(balance, harmonics, phase, exponent.imag)
-    standing = np.zeros_like(leaving)
-    standing[0] = np.hstack([one.at(np.zeros(1))[0] for one in circle.journals.values()])
-    x = np.append(standing, exponent.imag)
+    x = standing_response(circle, harmonics, exponent.imag).unknowns
     tangent = np.append(leaving, [0.0, 0.0])
     return family, Point(circle.speed, x, tangent, circle.eccentricity_max, 0)

@@ -9,7 +9,7 @@ from sfd_hbm_ros.hbm.balance import HarmonicBalance
 from sfd_hbm_ros.hbm.floquet import Stability, settled_stability
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.monodromy import FilmSlopes, monodromy, rates
-from sfd_hbm_ros.hbm.solution import JournalMotion
+from sfd_hbm_ros.hbm.solution import JournalMotion, Solution
 from sfd_hbm_ros.hbm.turning_frame import TurningMotion
 from sfd_hbm_ros.rotor import reduce_model
 
@@ -42,6 +42,21 @@ class QuasiPeriodicResponse:
     journals: dict[str, JournalMotion]
 
     @property
+    def frequency_ratio(self) -> float:
+        """Frequency w of the speed W."""
+        return self.frequency / self.speed
+
+    @property
+    def coefficients(self) -> Array:
+        """Coefficients of all journals in the turning frame [m], (rows, 2 dampers)."""
+        return np.hstack([motion.coefficients for motion in self.journals.values()])
+
+    @property
+    def unknowns(self) -> Array:
+        """What the quasi-periodic equations solve for: coefficients and frequency."""
+        return np.append(self.coefficients, self.frequency)
+
+    @property
     def eccentricity_max(self) -> float:
         """Greatest eccentricity of any damper."""
         return max(motion.eccentricity_max for motion in self.journals.values())
@@ -70,6 +85,18 @@ def quasi_periodic_response(
         for damper, q in zip(balance.machine.dampers, columns, strict=True)
     }
     return QuasiPeriodicResponse(speed, float(x[-1]), harmonics, journals)
+
+
+def standing_response(
+    circle: Solution, harmonics: Harmonics, frequency: float
+) -> QuasiPeriodicResponse:
+    """A circular orbit as the response whose oscillation at a frequency [rad/s] is nought."""
+    journals = {}
+    for name, motion in circle.journals.items():
+        rows = np.zeros((harmonics.rows, 2))
+        rows[0] = motion.at(np.zeros(1))[0]
+        journals[name] = JournalMotion(name, motion.clearance, harmonics, rows)
+    return QuasiPeriodicResponse(circle.speed, frequency, harmonics, journals)
 
 
 def quasi_periodic_stability(

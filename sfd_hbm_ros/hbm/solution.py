@@ -145,3 +145,8 @@ class Solution:
     def coefficients(self) -> Array:
         """Coefficients of all journals side by side [m], (rows, 2 dampers)."""
         return np.hstack([motion.coefficients for motion in self.journals.values()])
+
+    @property
+    def unknowns(self) -> Array:
+        """What the equations solve for: the coefficients, flattened."""
+        return self.coefficients.ravel()

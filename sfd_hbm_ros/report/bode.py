@@ -31,6 +31,7 @@ def draw_bode(
     """Draw amplitude and phase of the 1x vibration of a journal, unstable parts dashed.
 
     The vibration is A cos(angle - lag): the lag is that of its high spot behind the keyphasor.
+    Quasi-periodic branches are left out.
 
     Parameters
     ----------
@@ -46,7 +47,8 @@ def draw_bode(
         Whether the amplitude is from peak to peak, instead of from zero to peak.
     """
     unit = MICROMETRE / (2.0 if peak_to_peak else 1.0)
-    for branch in curve.branches:
+    branches = [branch for branch in curve.branches if branch.periodic]
+    for branch in branches:
         speed, first = branch.speed / RPM, _first(branch, damper, axis)
         draw_branch(amplitude, branch, speed, np.abs(first) / unit, INK)
         draw_branch(phase, branch, speed, _lag(first), INK)
@@ -57,7 +59,7 @@ def draw_bode(
     phase.invert_yaxis()
     amplitude.margins(x=0.0)
     label_abscissa(phase, "speed [rpm]")
-    keys = unstable_key(curve.branches, INK)
+    keys = unstable_key(branches, INK)
     if keys:
         legend(amplitude, keys)
 

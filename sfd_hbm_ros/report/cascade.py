@@ -1,5 +1,6 @@
 """Cascade (waterfall) plot: the spectra of a run-up, one above the other."""
 
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Literal
 
@@ -14,6 +15,7 @@ from sfd_hbm_ros.report.style import INK, LINE, QUIET
 from sfd_hbm_ros.report.units import MICROMETRE, RPM, grouped
 from sfd_hbm_ros.report.vibration import vibration
 from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.judged import CurveBranch
 
 Array = NDArray[np.float64]
 
@@ -27,7 +29,8 @@ def draw_cascade(
 ) -> None:
     """Draw the spectra that a slow run-up shows, each standing on its speed.
 
-    The mean (0x) is left out, and so are orders above 2x that cannot be seen.
+    The mean (0x) is left out, and so are orders above 2x that cannot be seen, and speeds at which
+    the run-up meets a quasi-periodic response: it has no orders of the speed.
 
     Parameters
     ----------
@@ -109,15 +112,24 @@ def _run_up(curve: ResponseCurve) -> list[Solution]:
     """Stable points in rising order of speed; where there are several, that which came first."""
     met: list[Solution] = []
     reached = -np.inf
-    for branch in curve.branches:
+    for branch in _in_order(curve):
         for stretch in stretches(branch):
             if stretch.stable:
                 points = np.arange(len(branch.solutions))[stretch.points]
                 stable = [branch.solutions[i] for i in points[branch.stable[points]]]
                 new = [one for one in stable if one.speed > reached]
-                met += new
+                met += [one for one in new if isinstance(one, Solution)]
                 reached = max([reached, *(one.speed for one in new)])
     return sorted(met, key=lambda one: one.speed)
+
+
+def _in_order(curve: ResponseCurve) -> Iterator[CurveBranch]:
+    """The branches, each that is quasi-periodic behind the one that it leaves."""
+    for branch in filter(lambda one: one.periodic, curve.branches):
+        yield branch
+        for other in curve.branches:
+            if not other.periodic and curve.meeting(other, 0)[0][0] is branch:
+                yield other
 
 
 def _spread(solutions: list[Solution]) -> list[Solution]:

@@ -5,9 +5,11 @@ from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 
+from sfd_hbm_ros.hbm import Harmonics, Solution
 from sfd_hbm_ros.report.abscissa import Abscissa
 from sfd_hbm_ros.report.units import RPM
 from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.responses import Response
 
 
 def write_table(curve: ResponseCurve, path: str | Path) -> None:
@@ -16,8 +18,10 @@ def write_table(curve: ResponseCurve, path: str | Path) -> None:
     Columns are the speed [rpm], the entry of the machine file if one varies, whether the point is
     stable (1 or 0), and of each damper the greatest eccentricity and the coefficients of Eq. 2
     [m]: mean, then cosine and sine of each order, of x and then of y; at last the orders in use,
-    and the branch by its number from 0, the detached ones behind the others. Numbers are written
-    in full precision.
+    the branch by its number from 0, the detached ones behind the others, and of a quasi-periodic
+    response its second frequency, in the frame that turns with the rotor, over the speed. Such a
+    response has no orders of the speed, and these and the coefficients are empty; other responses
+    leave the frequency empty. Numbers are written in full precision.
 
     Parameters
     ----------
@@ -54,22 +58,37 @@ def _header(curve: ResponseCurve) -> list[str]:
         ),
         "orders",
         "branch",
+        "frequency_ratio",
     ]
 
 
 def _rows(curve: ResponseCurve) -> Iterator[list[float | str]]:
-    varied, harmonics = Abscissa.of(curve).path, curve.harmonics
+    varied = Abscissa.of(curve).path
     for number, branch in enumerate(curve.every_branch):
-        for value, solution, stable in zip(
+        for value, response, stable in zip(
             branch.values.tolist(), branch.solutions, branch.stable, strict=True
         ):
             row: list[float | str] = [
-                solution.speed / RPM,
+                response.speed / RPM,
                 *([] if varied is None else [value]),
                 int(stable),
             ]
             for damper in curve.dampers:
-                motion = solution.journals[damper]
-                coefficients = harmonics.change_from(motion.harmonics, motion.coefficients)
-                row += [motion.eccentricity_max, *coefficients.T.ravel().tolist()]
-            yield [*row, " ".join(map(str, solution.orders)), number]
+                row.append(response.journals[damper].eccentricity_max)
+                row += _coefficients(curve.harmonics, response, damper)
+            if isinstance(response, Solution):
+                yield [*row, " ".join(map(str, response.orders)), number, ""]
+            else:
+                yield [*row, "", number, response.frequency_ratio]
+
+
+def _coefficients(
+    harmonics: Harmonics, response: Response, damper: str
+) -> list[float] | list[str]:
+    """Coefficients of x and then of y [m], or as many empty cells."""
+    if not isinstance(response, Solution):
+        return [""] * (2 * harmonics.rows)
+    motion = response.journals[damper]
+    coefficients = harmonics.change_from(motion.harmonics, motion.coefficients)
+    written: list[float] = coefficients.T.ravel().tolist()
+    return written

@@ -61,8 +61,8 @@ class ResponseCurve:
 
     @property
     def harmonics(self) -> Harmonics:
-        """Harmonics that hold those of every branch."""
-        others = [branch.solutions[0].harmonics for branch in self.branches]
+        """Harmonics that hold those of every branch of periodic responses."""
+        others = [branch.solutions[0].harmonics for branch in self.branches if branch.periodic]
         return max(self.balance.harmonics, *others, key=lambda group: group.revolutions)
 
     def meeting(self, branch: CurveBranch, point: int) -> list[tuple[CurveBranch, int]]:

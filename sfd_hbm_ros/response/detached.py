@@ -18,8 +18,9 @@ from sfd_hbm_ros.hbm.options import ContinuationOptions
 from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.hbm.solve import solution_at
 from sfd_hbm_ros.response.curve import ResponseCurve
-from sfd_hbm_ros.response.judged import CurveBranch, Progress, distance, judged
-from sfd_hbm_ros.response.jumps import SAME, solutions_at
+from sfd_hbm_ros.response.judged import CurveBranch, Progress, judged
+from sfd_hbm_ros.response.jumps import solutions_at
+from sfd_hbm_ros.response.responses import SAME, distance
 from sfd_hbm_ros.rotor import critical_speeds, hold_journals
 
 Array = NDArray[np.float64]

@@ -1,4 +1,9 @@
-"""A response curve as the guide of one machine: where to look for its solutions."""
+"""A response curve as the guide of one machine: where to look for its solutions.
+
+Its solutions are periodic. Where the machine moves quasi-periodically about an unstable circular
+orbit, its place is on the quasi-periodic branch, which says what lies ahead, and its solution is
+the circle.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,7 +15,7 @@ from sfd_hbm_ros.hbm.solve import solution_at
 from sfd_hbm_ros.response.curve import ResponseCurve
 from sfd_hbm_ros.response.following import NEAR, balanced
 from sfd_hbm_ros.response.journey import Journey, first_place, travel
-from sfd_hbm_ros.response.place import Place, places_at
+from sfd_hbm_ros.response.place import Place, motion_about, orbit_amid, places_at
 
 _ALIKE = 0.2  # distance from an outdated curve, in clearances, within which it still guides
 _ROUNDING = 1e-9  # of two distances, in clearances
@@ -75,7 +80,9 @@ class Guide:
     def solved(
         self, place: Place, beside: Place | None = None, known: Solution | None = None
     ) -> Solution | None:
-        """The machine's response at a place of the curve, if Newton's method leads there.
+        """The machine's periodic response at a place of the curve, if Newton's method leads there.
+
+        At a quasi-periodic place it is the circular orbit about which the machine moves.
 
         Parameters
         ----------
@@ -87,17 +94,22 @@ class Guide:
         known : Solution, optional
             The response there.
         """
-        balance = self.balance_for(place.harmonics)
-        x = place.coefficients
-        if known and beside and place.is_at(beside):
-            x = x + known.coefficients - beside.coefficients
+        orbit = self._orbit(place)
+        if orbit is None:
+            return None
+        balance = self.balance_for(orbit.harmonics)
+        x = orbit.coefficients
+        start = self._orbit(beside) if beside else None
+        if known and start and orbit.is_at(start):
+            x = x + known.coefficients - start.coefficients
         equations = balance.at(place.value)
         result = newton(equations, x.ravel(), _NEWTON)
         if not balanced(equations, result):
             return None
         solution = solution_at(balance, place.value, result.x)
-        nearest = min(other.distance(solution) for other in self.places(place.value))
-        near = place.distance(solution) < min(self._limit, nearest + _ROUNDING)
+        places = [other for other in self.places(place.value) if other.branch.periodic]
+        nearest = min(other.distance(solution) for other in places)
+        near = orbit.distance(solution) < min(self._limit, nearest + _ROUNDING)
         return solution if near else None
 
     def landings(self, left: Solution, speed: float) -> Iterator[Solution]:
@@ -116,10 +128,23 @@ class Guide:
                 yield solution
 
     def match(self, solution: Solution) -> Place | None:
-        """The stable place of a response on the curve, if it lies there."""
-        places = [place for place in self.places(solution.speed) if place.tenable]
+        """The place of a response on the curve, if it lies there and a machine can be on it.
+
+        For an unstable circular orbit it is the stable quasi-periodic one about it, if any.
+        """
+        places = [
+            place
+            for place in self.places(solution.speed)
+            if place.tenable and place.branch.periodic
+        ]
         place = min(places, key=lambda place: place.distance(solution), default=None)
-        return place if place and place.distance(solution) < self._limit else None
+        if self.curve is None or place is None or place.distance(solution) >= self._limit:
+            return None
+        return motion_about(self.curve, place) or place
+
+    def _orbit(self, place: Place) -> Place | None:
+        """The place itself, or that of the circle amid a quasi-periodic response."""
+        return orbit_amid(self.curve, place) if self.curve else place
 
     @property
     def _limit(self) -> float:

@@ -1,15 +1,40 @@
-"""The way of a machine along its response curve, with the jumps on it, and no solve."""
+"""The way of a machine along its response curve, with the jumps on it, and no solve.
 
-from collections.abc import Sequence
+The machine stays on its branch until that turns back, or ends within the range because the
+journal closes on its clearance; there it jumps to the other stable response that is nearest in
+eccentricity. Where its branch loses stability to one that leaves it, the machine moves onto that
+one if it is stable and leads onward; otherwise it jumps there too.
+"""
+
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.response.curve import ResponseCurve
 from sfd_hbm_ros.response.judged import CurveBranch
-from sfd_hbm_ros.response.jumps import SAME
 from sfd_hbm_ros.response.place import Place, place_on, places_at
+from sfd_hbm_ros.response.responses import SAME
 
-_MOST_JUMPS = 20  # of one journey, so that a curve with an odd end cannot make it endless
+_MOST_LEGS = 20  # of one journey, so that a curve with an odd end cannot make it endless
+
+
+class Leg(NamedTuple):
+    """A part of a journey without a jump.
+
+    Attributes
+    ----------
+    end : Place
+        Its last place.
+    arrived : bool
+        Whether that is the end of the journey.
+    landing : Place or None
+        Where the machine jumps to from its end; None at the end of the journey, where it leaves
+        the curve's range, or the curve shows no other stable response where a branch ends.
+    """
+
+    end: Place
+    arrived: bool
+    landing: Place | None
 
 
 class Journey(NamedTuple):
@@ -28,37 +53,41 @@ class Journey(NamedTuple):
     jumps: int
 
 
-def first_place(branches: Sequence[CurveBranch]) -> Place:
-    """Where a run-up through the whole range begins, a stable place if there is any."""
+def first_place(branches: Sequence[CurveBranch], rising: bool = True) -> Place:
+    """Where a journey up or down through the whole range begins, a stable place if any is."""
+    sign = 1.0 if rising else -1.0
     ends = [
         Place(branch, index, float(branch.values[point]))
         for branch in branches
         for index, point in ((0, 0), (len(branch.values) - 2, -1))
     ]
-    return min(ends, key=lambda end: (end.value, not end.stable))
+    return min(ends, key=lambda end: (sign * end.value, not end.stable))
+
+
+def span(branches: Sequence[CurveBranch]) -> tuple[float, float]:
+    """Lowest and highest value of the parameter on some branches."""
+    lowest = min(float(branch.values.min()) for branch in branches)
+    highest = max(float(branch.values.max()) for branch in branches)
+    return lowest, highest
 
 
 def travel(curve: ResponseCurve, place: Place, value: float) -> Journey:
-    """Let the parameter go steadily from a place to another value, as it goes in a machine.
+    """Let the parameter go steadily from a place to another value, as it goes in a machine."""
+    *before, last = legs(curve, place, value)
+    return Journey(last.end if last.arrived else None, len(before))
 
-    The machine stays on its branch until that turns back, or ends within the range because the
-    journal closes on its clearance; there it jumps to the other stable response that is nearest
-    in eccentricity. Where its branch loses stability to one that leaves it, the machine moves
-    onto that one if it is stable and leads onward; otherwise it jumps there too.
-    """
-    lowest = min(float(branch.values.min()) for branch in curve.branches)
-    highest = max(float(branch.values.max()) for branch in curve.branches)
-    for jumps in range(_MOST_JUMPS):
-        place, arrived = _along(curve, place, value)
-        if arrived:
-            return Journey(place, jumps)
-        if not lowest < place.value < highest:
-            break
-        landing = landings(curve.branches, place)
-        if not landing:
-            break
-        place = landing[0]
-    return Journey(None, jumps)
+
+def legs(curve: ResponseCurve, place: Place, value: float) -> Iterator[Leg]:
+    """The parts of a journey from a place to another value, with a jump from each to the next."""
+    lowest, highest = span(curve.branches)
+    for _ in range(_MOST_LEGS):
+        end, arrived = _along(curve, place, value)
+        within = not arrived and lowest < end.value < highest
+        landing = next(iter(landings(curve.branches, end)), None) if within else None
+        yield Leg(end, arrived, landing)
+        if landing is None:
+            return
+        place = landing
 
 
 def landings(branches: Sequence[CurveBranch], left: Place) -> list[Place]:

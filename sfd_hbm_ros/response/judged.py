@@ -8,13 +8,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.hbm import Instability, Solution, stability
+from sfd_hbm_ros.hbm import Instability, Solution
 from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.events import locate, with_folds
 from sfd_hbm_ros.hbm.family import Family
 from sfd_hbm_ros.hbm.points import Point, Stop
-from sfd_hbm_ros.hbm.solve import solution_at
+from sfd_hbm_ros.hbm.quasi_periodic_branch import QuasiPeriodicBranch
 from sfd_hbm_ros.hbm.switching import breaks_symmetry
+from sfd_hbm_ros.response.responses import Response, response_at, stability_of
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -30,8 +31,8 @@ class CurveBranch:
         The equations of its points.
     values : (m,) array
         The parameter that varies: rotor speed [rad/s], or an entry of the machine file.
-    solutions : tuple of Solution
-        The m points.
+    solutions : tuple of Solution, or of QuasiPeriodicResponse
+        The m points, all of one kind.
     instability : tuple of Instability or None
         How each is unstable; None for a stable point, `Instability.FOLD` for a fold. Where a
         symmetry of the response breaks without a fold it is `Instability.SYMMETRY_BREAKING`.
@@ -43,10 +44,20 @@ class CurveBranch:
 
     family: Family
     values: Array
-    solutions: tuple[Solution, ...]
+    solutions: tuple[Response, ...]
     instability: tuple[Instability | None, ...]
     fold: NDArray[np.bool_]
     stop: Stop
+
+    @property
+    def periodic(self) -> bool:
+        """Whether its responses repeat with the speed or after some revolutions."""
+        return isinstance(self.solutions[0], Solution)
+
+    @property
+    def orbits(self) -> tuple[Solution, ...]:
+        """The solutions if they are periodic, or else none."""
+        return tuple(one for one in self.solutions if isinstance(one, Solution))
 
     @property
     def stable(self) -> NDArray[np.bool_]:
@@ -78,23 +89,14 @@ class CurveBranch:
         return np.array([one.eccentricity_max for one in self.solutions])
 
 
-def distance(one: Solution, other: Solution) -> float:
-    """Greatest difference of the coefficients of two responses, of the clearance.
-
-    They may be balanced over different numbers of revolutions.
-    """
-    if one.harmonics.revolutions < other.harmonics.revolutions:
-        one, other = other, one
-    shorter = one.harmonics.change_from(other.harmonics, other.coefficients)
-    clearances = np.repeat([motion.clearance for motion in one.journals.values()], 2)
-    return float(np.abs((one.coefficients - shorter) / clearances).max())
+_STRIDE = 8  # points of a quasi-periodic branch of which the first and the last are judged
 
 
 class _Judged(NamedTuple):
     """A point of a branch, its response and how that is unstable."""
 
     point: Point
-    solution: Solution
+    solution: Response
     instability: Instability | None
     fold: bool
 
@@ -103,11 +105,12 @@ def judged(branch: Branch, progress: Progress | None = None) -> CurveBranch:
     """Follow a branch to its end, with its folds and the stability of every point.
 
     Where stability is lost or regained other than at a fold, the point of the change is put in.
+    As it takes long to judge a quasi-periodic response, those between two that are judged alike
+    are taken to be like them.
     """
     points: list[_Judged] = []
-    for point, fold in with_folds(branch, _reported(branch, progress)):
-        one = _judge(branch.family, point, fold)
-        if points and not fold and not points[-1].fold:
+    for one in _judged_points(branch, list(with_folds(branch, _reported(branch, progress)))):
+        if points and not one.fold and not points[-1].fold:
             change = _change(branch, points[-1], one)
             points += [change] if change else []
         points.append(one)
@@ -122,10 +125,30 @@ def judged(branch: Branch, progress: Progress | None = None) -> CurveBranch:
     )
 
 
+def _judged_points(branch: Branch, followed: list[tuple[Point, bool]]) -> Iterator[_Judged]:
+    """Every point with its stability."""
+    stride = _STRIDE if isinstance(branch, QuasiPeriodicBranch) else 1
+    for first in range(0, len(followed), stride):
+        part = followed[first : first + stride]
+        last = _judge(branch.family, *part[-1])
+        kind = last.instability
+        if len(part) == 1:
+            yield last
+            continue
+        begin = _judge(branch.family, *part[0])
+        alike = begin.instability is kind and not any(fold for _, fold in part)
+        yield begin
+        for point, fold in part[1:-1]:
+            at = branch.family.at(point.value)
+            known = _Judged(point, response_at(at, point.x), kind, False)
+            yield known if alike else _judge(branch.family, point, fold)
+        yield last
+
+
 def _judge(family: Family, point: Point, fold: bool) -> _Judged:
     at = family.at(point.value)
-    solution = solution_at(at.balance, at.speed, point.x)
-    kind = Instability.FOLD if fold else stability(at.balance, solution).instability
+    solution = response_at(at, point.x)
+    kind = Instability.FOLD if fold else stability_of(at.balance, solution).instability
     return _Judged(point, solution, kind, fold)
 
 
@@ -136,14 +159,17 @@ def _change(branch: Branch, before: _Judged, after: _Judged) -> _Judged | None:
 
     def growth(point: Point) -> float:
         at = branch.family.at(point.value)
-        found = stability(at.balance, solution_at(at.balance, at.speed, point.x))
-        return found.growth
+        return stability_of(at.balance, response_at(at, point.x)).growth
 
     point = locate(branch, before.point, after.point, growth)
     if point is None:
         return None
     kind = before.instability or after.instability
-    if kind is Instability.FOLD and breaks_symmetry(branch.family.at(point.value), point.x):
+    if (
+        kind is Instability.FOLD
+        and isinstance(before.solution, Solution)
+        and breaks_symmetry(branch.family.at(point.value), point.x)
+    ):
         kind = Instability.SYMMETRY_BREAKING
     return _judge(branch.family, point, False)._replace(instability=kind)
 

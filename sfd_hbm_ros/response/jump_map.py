@@ -1,7 +1,8 @@
 """Where a machine would jump from any place of a response curve, worked out once for the curve.
 
-Every branch is cut into stretches at the points where it turns back, so that the speed rises or
-falls throughout a stretch and its two ends are where a run-up and a coast-down lead.
+Every branch is cut into stretches at the points where it turns back or other branches leave it, so
+that the speed rises or falls throughout a stretch. A run-up and a coast-down lead from it to its
+ends, and on from there where a stable branch leaves or goes on.
 """
 
 import math
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.response.curve import ResponseCurve
-from sfd_hbm_ros.response.journey import landings
+from sfd_hbm_ros.response.journey import legs, span
 from sfd_hbm_ros.response.judged import CurveBranch
 from sfd_hbm_ros.response.jumps import Direction
 from sfd_hbm_ros.response.outlook import JumpAhead, Outlook, unknown_outlook
@@ -32,7 +33,7 @@ class Stretch:
     Attributes
     ----------
     run_up, coast_down : JumpAhead
-        What happens at its upper and at its lower end.
+        The jumps to which it leads.
     stable : tuple of (float, float)
         Ranges of the speed [rad/s] in which it is stable.
     """
@@ -90,12 +91,14 @@ def jump_map(curve: ResponseCurve) -> JumpMap:
     owner = {}
     for branch in curve.branches:
         order = _arc(branch)
-        bounds = [0, *_turns(branch.values[order]), len(order) - 1]
+        forks = [at for at in range(len(order)) if curve.meeting(branch, int(order[at]))]
+        bounds = sorted({0, *_turns(branch.values[order]), *forks, len(order) - 1})
         owner[branch] = np.empty(len(order) - 1, np.intp)
         for first, last in pairwise(bounds):
-            stretch = order[first : last + 1]
-            owner[branch][stretch[:-1] % len(owner[branch])] = len(stretches)
-            stretches.append(_stretch(curve, branch, stretch))
+            points = order[first : last + 1]
+            steps = points[:-1] % len(owner[branch])
+            owner[branch][steps] = len(stretches)
+            stretches.append(_stretch(curve, branch, points, steps))
     return JumpMap(tuple(stretches), owner)
 
 
@@ -115,37 +118,36 @@ def _turns(values: Array) -> list[int]:
     return turns
 
 
-def _stretch(curve: ResponseCurve, branch: CurveBranch, points: Indices) -> Stretch:
-    """The stretch through points of a branch."""
+def _stretch(
+    curve: ResponseCurve, branch: CurveBranch, points: Indices, steps: Indices
+) -> Stretch:
+    """The stretch through points of a branch and the steps between them."""
     if branch.values[points[0]] > branch.values[points[-1]]:
-        points = points[::-1]
-    lower, upper = int(points[0]), int(points[-1])
+        points, steps = points[::-1], steps[::-1]
     return Stretch(
-        _end(curve, branch, upper, Direction.RUN_UP),
-        _end(curve, branch, lower, Direction.COAST_DOWN),
+        _jump(curve, _within(branch, steps[-1]), Direction.RUN_UP),
+        _jump(curve, _within(branch, steps[0]), Direction.COAST_DOWN),
         tuple(_stable(branch, points)),
     )
 
 
-def _end(curve: ResponseCurve, branch: CurveBranch, point: int, direction: Direction) -> JumpAhead:
-    """What happens at a point where a stretch ends."""
-    value, last = float(branch.values[point]), len(branch.values) - 1
-    if branch.stop is not Stop.CLOSED and point in (0, last):
-        if value in _range(curve):
+def _within(branch: CurveBranch, step: int) -> Place:
+    """The place in the middle of a step between two points."""
+    return Place(branch, int(step), float(branch.values[step : step + 2].mean()))
+
+
+def _jump(curve: ResponseCurve, place: Place, direction: Direction) -> JumpAhead:
+    """The first jump on the way from a place."""
+    end, _, landing = next(legs(curve, place, direction.end))
+    branch, point = end.branch, end.point
+    if branch.stop is not Stop.CLOSED and point in (0, len(branch.values) - 1):
+        if end.value in span(curve.branches):
             return JumpAhead(direction, math.inf)
-        if point == last and branch.stop is not Stop.CLEARANCE:
-            return JumpAhead(direction, math.nan)
-    left = Place(branch, min(point, last - 1), value)
-    after = [place.eccentricity for place in landings(curve.branches, left)[:1]]
+        if point > 0 and branch.stop is not Stop.CLEARANCE:
+            return JumpAhead(direction, math.nan)  # where it was lost
     before = float(branch.worst_eccentricity[point])
-    return JumpAhead(direction, value, before, *after)
-
-
-def _range(curve: ResponseCurve) -> Interval:
-    """Lowest and highest speed of a curve [rad/s]."""
-    lowest = min(float(branch.values.min()) for branch in curve.branches)
-    highest = max(float(branch.values.max()) for branch in curve.branches)
-    return lowest, highest
+    after = landing.eccentricity if landing else math.nan
+    return JumpAhead(direction, end.value, before, after)
 
 
 def _stable(branch: CurveBranch, points: Indices) -> Iterator[Interval]:

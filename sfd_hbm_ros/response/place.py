@@ -7,8 +7,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.hbm import Harmonics, Instability, Solution
+from sfd_hbm_ros.hbm import Harmonics, Instability
+from sfd_hbm_ros.response.curve import ResponseCurve
 from sfd_hbm_ros.response.judged import CurveBranch
+from sfd_hbm_ros.response.responses import Response, between, distance
 
 Array = NDArray[np.float64]
 
@@ -51,11 +53,14 @@ class Place:
         return self.branch.solutions[self.index].harmonics
 
     @cached_property
+    def response(self) -> Response:
+        """The response about there, from which Newton's method can start."""
+        return between(*self._neighbours, self.part)
+
+    @property
     def coefficients(self) -> Array:
-        """Coefficients about there [m], (rows, n), from which Newton's method can start."""
-        here, there = (one.coefficients for one in self._neighbours)
-        coefficients: Array = here + self.part * (there - here)
-        return coefficients
+        """Coefficients about there [m], (rows, n)."""
+        return self.response.coefficients
 
     @property
     def eccentricity(self) -> float:
@@ -73,35 +78,37 @@ class Place:
         return None in self.branch.instability[self.index : self.index + 2]
 
     @property
+    def stable_orbit(self) -> bool:
+        """Whether the response is stable there and periodic."""
+        return self.stable and self.branch.periodic
+
+    @property
     def tenable(self) -> bool:
         """Whether a machine can be there: where it is unstable, it must not be as at a fold."""
         kinds = self.branch.instability[self.index : self.index + 2]
         return any(kind is not Instability.FOLD for kind in kinds)
 
     @property
-    def nearest(self) -> Solution:
+    def point(self) -> int:
+        """The nearer of both points."""
+        return self.index + round(self.part)
+
+    @property
+    def nearest(self) -> Response:
         """The response at the nearer of both points."""
-        return self._neighbours[round(self.part)]
+        return self.branch.solutions[self.point]
 
     def is_at(self, other: "Place") -> bool:
         """Whether this is another place's stretch between two points."""
         return self.branch is other.branch and self.index == other.index
 
-    def distance(self, solution: Solution) -> float:
-        """Greatest difference of any coefficient from a solution's, in clearances."""
-        ours, theirs = self.harmonics, solution.harmonics
-        if ours == theirs:
-            difference = self.coefficients - solution.coefficients
-        else:
-            both = max(ours, theirs, key=lambda harmonics: harmonics.revolutions)
-            difference = both.change_from(ours, self.coefficients)
-            difference = difference - both.change_from(theirs, solution.coefficients)
-        clearances = np.repeat([one.clearance for one in solution.journals.values()], 2)
-        return float(np.abs(difference / clearances).max())
+    def distance(self, response: Response) -> float:
+        """Greatest difference of any coefficient from a response's, in clearances."""
+        return distance(self.response, response)
 
     @property
-    def _neighbours(self) -> tuple[Solution, ...]:
-        return self.branch.solutions[self.index : self.index + 2]
+    def _neighbours(self) -> tuple[Response, Response]:
+        return self.branch.solutions[self.index], self.branch.solutions[self.index + 1]
 
 
 def place_on(branch: CurveBranch, index: int, value: float) -> Place:
@@ -121,3 +128,26 @@ def places_at(branches: Sequence[CurveBranch], value: float) -> list[Place]:
             if not (found and place.is_at(found[-1])):
                 found.append(place)
     return found
+
+
+def orbit_amid(curve: ResponseCurve, place: Place) -> Place | None:
+    """The place itself if its response is periodic, or else that of the circle amid it, if any."""
+    if place.branch.periodic:
+        return place
+    circles = [other for other, _ in curve.meeting(place.branch, 0)]
+    amid = places_at(circles, place.value)
+    return min(amid, key=lambda one: one.distance(place.response), default=None)
+
+
+def motion_about(curve: ResponseCurve, orbit: Place) -> Place | None:
+    """The stable quasi-periodic place about an unstable circular orbit, if there is one."""
+    if orbit.stable:
+        return None
+    leaving = [
+        branch
+        for branch in curve.branches
+        if not branch.periodic
+        and any(other is orbit.branch for other, _ in curve.meeting(branch, 0))
+    ]
+    about = [place for place in places_at(leaving, orbit.value) if place.stable]
+    return min(about, key=lambda one: one.distance(orbit.response), default=None)

@@ -1,5 +1,6 @@
 """Responses of either kind: periodic ones, and quasi-periodic ones of axisymmetric machines."""
 
+from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
@@ -45,19 +46,37 @@ def distance(one: Response, other: Response) -> float:
     Periodic ones may be balanced over different numbers of revolutions. A periodic response is
     a circular orbit where others are quasi-periodic, and is compared to them in their frame.
     """
-    return apart(one, one.coefficients, other)
-
-
-def apart(one: Response, coefficients: Array, other: Response) -> float:
-    """As `distance`, with other coefficients (rows, n) in the place of the first response's."""
-    theirs = other.coefficients
     if isinstance(one, QuasiPeriodicResponse) and isinstance(other, Solution):
-        theirs = standing_response(other, one.harmonics, one.frequency).coefficients
+        other = standing_response(other, one.harmonics, one.frequency)
     elif isinstance(one, Solution) and isinstance(other, QuasiPeriodicResponse):
-        coefficients = standing_response(one, other.harmonics, other.frequency).coefficients
-    elif one.harmonics != other.harmonics:
-        both = max(one.harmonics, other.harmonics, key=lambda group: group.revolutions)
-        coefficients = both.change_from(one.harmonics, coefficients)
-        theirs = both.change_from(other.harmonics, theirs)
+        one = standing_response(one, other.harmonics, other.frequency)
+    group = max(one.harmonics, other.harmonics, key=lambda group: group.revolutions)
+    ours, theirs = (
+        response.coefficients
+        if response.harmonics == group
+        else group.change_from(response.harmonics, response.coefficients)
+        for response in (one, other)
+    )
     clearances = np.repeat([motion.clearance for motion in one.journals.values()], 2)
-    return float(np.abs((coefficients - theirs) / clearances).max())
+    return float(np.abs((ours - theirs) / clearances).max())
+
+
+def between(one: Response, other: Response, part: float) -> Response:
+    """The response in proportion between two neighbours on a branch, which Newton can start from.
+
+    Parameters
+    ----------
+    one, other : Solution or QuasiPeriodicResponse
+        The neighbours, of the same kind and harmonics.
+    part : float
+        Part of the way from the one to the other, from 0 to 1.
+    """
+    speed = one.speed + part * (other.speed - one.speed)
+    journals = {}
+    for name, motion in one.journals.items():
+        change = other.journals[name].coefficients - motion.coefficients
+        journals[name] = replace(motion, coefficients=motion.coefficients + part * change)
+    if isinstance(one, QuasiPeriodicResponse) and isinstance(other, QuasiPeriodicResponse):
+        frequency = one.frequency + part * (other.frequency - one.frequency)
+        return replace(one, speed=speed, frequency=frequency, journals=journals)
+    return replace(one, speed=speed, journals=journals)

@@ -7,7 +7,8 @@ import numpy as np
 
 from sfd_hbm_ros.hbm import Instability
 from sfd_hbm_ros.response.curve import ResponseCurve
-from sfd_hbm_ros.response.jumps import Direction, Jump, jumps
+from sfd_hbm_ros.response.journey import Leg, legs
+from sfd_hbm_ros.response.jumps import Direction, Jump, jumps, leaps
 
 
 @dataclass(frozen=True)
@@ -68,11 +69,26 @@ class Summary:
 
     @cached_property
     def hysteresis(self) -> float | None:
-        """Distance between the first jump up through the range and the first one down."""
-        first = {jump.direction: jump.value for jump in reversed(self.jumps)}
-        if len(first) < 2:
-            return None
-        return abs(first[Direction.RUN_UP] - first[Direction.COAST_DOWN])
+        """Width of the lowest range that a jump on the way up and one on the way down bound.
+
+        A machine that turned back after either jump would next make the other, so that between
+        them there are two stable responses. None where no two jumps belong together so.
+        """
+        ups, downs = (leaps(self.curve, direction) for direction in Direction)
+        widths = (
+            up.end.value - down.end.value
+            for up in ups
+            for down in downs
+            if self._comes_next(down, up, Direction.COAST_DOWN)
+            and self._comes_next(up, down, Direction.RUN_UP)
+        )
+        return next(widths, None)
+
+    def _comes_next(self, leap: Leg, before: Leg, direction: Direction) -> bool:
+        """Whether a machine that turns after one jump next makes another."""
+        assert before.landing is not None
+        following = next(legs(self.curve, before.landing, direction.end))
+        return following.end.is_at(leap.end)
 
     @cached_property
     def amplification_factor(self) -> float | None:

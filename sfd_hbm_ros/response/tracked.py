@@ -40,8 +40,9 @@ class Tracked:
         Whether the machine jumped on the way from the last speed, loads and parameters.
     stable : bool or None
         Whether the response is stable. At a fold a machine jumps; where a response loses its
-        stability otherwise it goes on, moving about it, and this is False. None where neither a
-        current curve nor a computation tells.
+        stability otherwise it goes on, moving about it, and this is False. So it is about the
+        circular orbit amid a quasi-periodic response, on whose branch its place then is. None
+        where neither a current curve nor a computation tells.
     place : Place or None
         Where on the curve it is: its branch, and the index of the point before it. On an outdated
         curve, the nearest place.

@@ -4,7 +4,8 @@ The machine stays on its branch until that folds back or closes on the clearance
 to the other stable response that is nearest in eccentricity. That holds for speed, loads and
 parameters, either way. The response curve guides: it says where the folds are, and from where
 Newton's method starts. Without a current one the response is followed by arclength where it moves
-far, so that a fold shows.
+far, so that a fold shows. A machine that moves quasi-periodically about an unstable circular orbit
+has that circle as its solution, its place on the quasi-periodic branch, and jumps at its end.
 """
 
 from collections.abc import Iterator
@@ -140,7 +141,7 @@ class Tracker:
         place = self._guide.run_up(speed).place
         solution = self._guide.solved(place) if place else None
         if place and solution:
-            return _Point(self._guide.balance, solution, place, stable=place.stable)
+            return _Point(self._guide.balance, solution, place, stable=place.stable_orbit)
         return self._tenable(iter([solve(self._guide.balance, speed)]))
 
     def _travelled(self, last: _Point, speed: float) -> _Point | None:
@@ -151,7 +152,7 @@ class Tracker:
         solution = self._guide.solved(place, last.place, last.solution) if place else None
         if not (place and solution):
             return None
-        return _Point(self._guide.balance, solution, place, jumps > 0, place.stable)
+        return _Point(self._guide.balance, solution, place, jumps > 0, place.stable_orbit)
 
     def _followed(self, last: _Point, speed: float) -> _Point:
         """The response followed along its branch, or that onto which the machine jumps."""
@@ -202,7 +203,7 @@ class Tracker:
     def _point(self, solution: Solution, orientation: float | None = None) -> _Point:
         """A response with its place on the curve."""
         place = self._guide.match(solution)
-        stable = place.stable if place and self.current else None
+        stable = place.stable_orbit if place and self.current else None
         return _Point(self._guide.balance, solution, place, False, stable, orientation)
 
     def _tracked(self, point: _Point) -> Tracked:

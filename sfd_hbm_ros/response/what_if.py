@@ -49,4 +49,4 @@ def what_if(guide: Guide, place: Place | None, speed: float) -> Tracked:
     except ResonanceError as error:
         return Tracked(no_solution(guide.balance, speed, str(error)))
     name = branch_name(solution, others)
-    return Tracked(solution, name, jumps > 0, there.stable, there, guide.current, other)
+    return Tracked(solution, name, jumps > 0, there.stable_orbit, there, guide.current, other)

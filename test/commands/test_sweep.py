@@ -1,7 +1,9 @@
 """The verb `sweep`: what it prints, the files it writes, and what it refuses."""
 
 import csv
+import io
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +17,7 @@ from sfd_hbm_ros.response.curve import response_curve
 PAPER = str(Path(__file__).parents[2] / "config" / "paper_rotor.yaml")
 RPM = np.pi / 30.0
 VISCOSITY = "dampers.damper_1.viscosity"
+HEAVY = "unbalance.disk_2.magnitude=5.039e-4"
 DISK_1 = {"unbalance.disk_2.station": "disk_1", "unbalance.disk_2.magnitude": "5.039e-4"}
 OPTIONS = [word for path, value in DISK_1.items() for word in ("--set", f"{path}={value}")]
 
@@ -81,6 +84,72 @@ def test_entry_of_the_machine_file_varies(capsys):
     assert branch.worst_eccentricity[0] == pytest.approx(peak["eccentricity"], rel=1e-8)
 
 
+@pytest.fixture(scope="module")
+def quasi_periodic(tmp_path_factory):
+    """A sweep onto the quasi-periodic branch, its JSON printed and its files."""
+    folder = tmp_path_factory.mktemp("sweep")
+    options = ["--rpm", "3960:4145", "--harmonics", "1", "--set", HEAVY]
+    files = ["--output", str(folder / "curve.csv"), "--picture", str(folder / "curve.png")]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "stdout", io.StringIO())
+        assert main(["sweep", PAPER, *options, *files, "--json"]) == 0
+        printed = json.loads(sys.stdout.getvalue())
+    return printed, folder
+
+
+def test_quasi_periodic_branch(quasi_periodic):
+    """It leaves at the Neimark-Sacker bifurcation and reaches the end of the range."""
+    printed, folder = quasi_periodic
+    [onset] = printed["instabilities"]
+    [leaving] = printed["quasi_periodic"]
+    assert onset["kind"] == "Neimark-Sacker"
+    assert leaving["speed_rpm"] == pytest.approx([onset["speed_rpm"], 4145.0])
+    assert leaving["stable_rpm"] == leaving["speed_rpm"]
+    assert leaving["eccentricity"][0] == pytest.approx(onset["eccentricity"])
+    assert printed["jumps"] == []
+    with open(folder / "curve.csv", newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["frequency_ratio"]]
+    assert float(rows[-1]["speed_rpm"]) == pytest.approx(4145.0)
+    assert (folder / "curve.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_detached_branches(capsys):
+    """The paper's rotor has one above an eccentricity of 0.85, just below 4160 rpm."""
+    options = ["--rpm", "4000:4300", "--harmonics", "1", "--detached", "--json"]
+    assert main(["sweep", PAPER, *options]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    [detached] = printed["detached"]
+    assert detached["eccentricity"][0] > 0.85
+    assert detached["speed_rpm"][1] == pytest.approx(4160.0, abs=5.0)
+
+
+def test_selected_harmonics_lie_within_the_tolerance(tmp_path, capsys):
+    """A part of the trial group is in use, and the peak is that of the whole group."""
+    options = ["--rpm", "3800:3900", "--harmonics", "5", "--set", "gravity=true", "--json"]
+    table = tmp_path / "curve.csv"
+    assert main(["sweep", PAPER, *options, "--select", "1e-3", "--output", str(table)]) == 0
+    selected = json.loads(capsys.readouterr().out)
+    assert main(["sweep", PAPER, *options]) == 0
+    whole = json.loads(capsys.readouterr().out)
+    difference = selected["peak"]["eccentricity"] - whole["peak"]["eccentricity"]
+    assert abs(difference) < 2.0 * 1e-3  # a tolerance in each of two coordinates
+    with open(table, newline="", encoding="utf-8") as file:
+        groups = {row["orders"] for row in csv.DictReader(file)}
+    assert all(len(group.split()) < 6 for group in groups)
+
+
+def test_sub_harmonics_are_let_in(tmp_path, capsys):
+    """Over two revolutions there are half orders, which a circular orbit does not have."""
+    table = tmp_path / "curve.csv"
+    options = ["--rpm", "3000:3050", "--harmonics", "1", "--revolutions", "2"]
+    assert main(["sweep", PAPER, *options, "--output", str(table), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["folds"] == []
+    with open(table, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert {"damper_1.x_1/2_cos", "damper_1.x_1_cos"} <= set(rows[0])
+    assert max(abs(float(row["damper_1.x_1/2_cos"])) for row in rows) < 1e-12
+
+
 def test_text_for_people(capsys):
     assert main(["sweep", PAPER, "--rpm", "3900:4100", "--harmonics", "1", *OPTIONS]) == 0
     lines = capsys.readouterr().out.splitlines()
@@ -101,6 +170,16 @@ def test_text_for_people(capsys):
             "--rpm 1:2: must be a sing",
         ),
         (["--rpm", "9", "--vary", "x=1:2"], "x is unknown"),
+        (
+            ["--rpm", "9", "--vary", f"{VISCOSITY}=0.02:0.03", "--detached"],
+            "--detached: is for a range of speeds, not for --vary",
+        ),
+        (
+            ["--rpm", "9", "--vary", f"{VISCOSITY}=0.02:0.03", "--select", "1e-3"],
+            "--select: is for a range of speeds, not for --vary",
+        ),
+        (["--rpm", "3000:3050", "--revolutions", "0"], "revolutions: 0 is not allowed"),
+        (["--rpm", "3000:3050", "--select", "0"], "tolerance: 0"),
         (
             ["--rpm", "9", "--vary", "dampers.damper_1.viscosity=1"],
             "--vary dampers.damper_1.visco",

@@ -20,7 +20,7 @@ from .process import PAPER_ROTOR, NodeProcess
 RPM = np.pi / 30.0  # rad/s
 OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"
 UNBALANCE = "unbalance.disk_2.magnitude", 5.039e-4
-BISTABLE = 4100.0 * RPM  # between the jumps at 3985 and 4162 rpm
+BISTABLE = 4100.0 * RPM  # between the jumps at 3985 and 4160 rpm
 FIRST_PREDICTION = 3.0  # s on an idle computer
 LOADED = 5.0  # times longer where the tests' computer has other work, too
 

@@ -58,9 +58,12 @@ def test_lag_grows_downwards(pair):
 
 
 def test_circular_orbit_is_the_eccentricity(pair):
-    """Of an orbit about the centre the amplitude of 1x is the eccentricity times clearance."""
+    """Of an orbit about the centre the amplitude of 1x is the eccentricity times clearance.
+
+    The quasi-periodic branch is left out.
+    """
     draw_bode(*pair, jumping(), DAMPER)
-    for points, branch in zip(reading.drawn(pair[0]), jumping().branches, strict=True):
+    for points, branch in zip(reading.drawn(pair[0]), jumping().branches[:2], strict=True):
         assert points[:, 1] == pytest.approx(branch.eccentricity(DAMPER) * 254.0, rel=1e-9)
     assert reading.legend(pair[0]) == ["unstable"]
 

@@ -49,9 +49,9 @@ def test_heights_are_amplitudes(axes):
 
 
 def test_shows_a_run_up(axes):
-    """Up to where the branch of the run-up loses stability, and then the other one."""
+    """Up to where the branch of the run-up loses stability, and behind the quasi-periodic one."""
     draw_cascade(axes, jumping(), DAMPER)
-    up, down = jumping().branches
+    up, down, quasi_periodic = jumping().branches
     lost = up.speed[up.stable].max() / RPM
     lines = stems(axes)[:-1]
     first = lines[np.isclose(lines[:, 0], lines[:, 1] / 60.0)]
@@ -61,6 +61,7 @@ def test_shows_a_run_up(axes):
     assert speed[jump] <= lost < speed[jump + 1]
     stable = np.concatenate([branch.speed[branch.stable] / RPM for branch in (up, down)])
     assert np.isin(speed.round(9), stable.round(9)).all()
+    assert speed[jump + 1] > quasi_periodic.speed.max() / RPM
 
 
 def test_at_most_forty_spectra(axes):

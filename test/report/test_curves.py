@@ -60,14 +60,25 @@ def test_lines_stay_between_the_points(axes):
 
 def test_marks(axes):
     draw_response(axes, jumping(), DAMPER)
-    first, second = jumping().branches
+    first, second, leaving = jumping().branches
     [fold] = np.flatnonzero(second.fold)
     [mark] = reading.marks(axes, "o")
     assert mark == pytest.approx([second.speed[fold] / RPM, second.eccentricity(DAMPER)[fold]])
     [mark] = reading.marks(axes, "s")
     lost = np.flatnonzero(first.stable)[-1] + 1
     assert mark == pytest.approx([first.speed[lost] / RPM, first.eccentricity(DAMPER)[lost]])
+    assert leaving.eccentricity(DAMPER)[0] == pytest.approx(mark[1], rel=1e-12)
     assert reading.legend(axes) == ["unstable", "fold", "Neimark-Sacker"]
+
+
+def test_quasi_periodic_branch_is_drawn_from_its_onset(axes):
+    draw_response(axes, jumping(), DAMPER)
+    leaving = jumping().branches[2]
+    [mark] = reading.marks(axes, "s")
+    [line] = [line for line in reading.curves(axes) if np.allclose(line.get_xydata()[0], mark)][1:]
+    assert not reading.is_dashed(line)
+    expected = np.column_stack([leaving.speed / RPM, leaving.eccentricity(DAMPER)])
+    assert np.allclose(reading.knots(line), expected)
 
 
 @pytest.mark.parametrize("kind", [kind for kind in Instability if kind is not Instability.FOLD])

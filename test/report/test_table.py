@@ -21,10 +21,11 @@ def read(path):
 def test_round_trip(curve, tmp_path):
     """Every number comes back as it was, point by point in the order of the arc."""
     write_table(curve(), tmp_path / "curve.csv")
-    rows = read(tmp_path / "curve.csv")
+    rows = [row for row in read(tmp_path / "curve.csv") if not row["frequency_ratio"]]
     points = [
         (solution, stable)
         for branch in curve().branches
+        if branch.periodic
         for solution, stable in zip(branch.solutions, branch.stable, strict=True)
     ]
     harmonics = curve().balance.harmonics
@@ -44,8 +45,39 @@ def test_columns(tmp_path):
     header = (tmp_path / "curve.csv").read_text().splitlines()[0]
     assert header == (
         "speed_rpm,stable,damper_1.eccentricity_max,damper_1.x_0,damper_1.x_1_cos,"
-        "damper_1.x_1_sin,damper_1.y_0,damper_1.y_1_cos,damper_1.y_1_sin"
+        "damper_1.x_1_sin,damper_1.y_0,damper_1.y_1_cos,damper_1.y_1_sin,"
+        "orders,branch,frequency_ratio"
     )
+
+
+def test_quasi_periodic_response_has_a_second_frequency_and_no_orders(tmp_path):
+    write_table(jumping(), tmp_path / "curve.csv")
+    rows = [row for row in read(tmp_path / "curve.csv") if row["branch"] == "2"]
+    leaving = jumping().branches[2]
+    for row, response, stable in zip(rows, leaving.solutions, leaving.stable, strict=True):
+        filled = {column for column, cell in row.items() if cell}
+        assert filled == {
+            "speed_rpm",
+            "stable",
+            f"{DAMPER}.eccentricity_max",
+            "branch",
+            "frequency_ratio",
+        }
+        assert float(row["frequency_ratio"]) == response.frequency / response.speed
+        assert float(row[f"{DAMPER}.eccentricity_max"]) == response.eccentricity_max
+        assert row["stable"] == ("1" if stable else "0")
+
+
+def test_orders_in_use_and_branches(tmp_path):
+    """Orders whose coefficients are zero are not in use; detached branches come last."""
+    still = motion(np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 2.0], [0.0, 0.0]]))
+    half = motion(np.arange(10.0).reshape(5, 2), highest=1, revolutions=2)
+    main, other = made([100.0, 200.0], [still, still]), made([300.0], [half])
+    curve = replace(main, branches=(*main.branches, *other.branches), detached=main.branches)
+    write_table(curve, tmp_path / "curve.csv")
+    rows = read(tmp_path / "curve.csv")
+    assert [row["branch"] for row in rows] == ["0", "0", "1", "2", "2"]
+    assert [row["orders"] for row in rows] == ["0 2", "0 2", "0 1/2 1", "0 2", "0 2"]
 
 
 def test_an_entry_that_varies_has_a_column(tmp_path):

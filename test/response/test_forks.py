@@ -11,9 +11,12 @@ from sfd_hbm_ros.machine import override_all
 from sfd_hbm_ros.response.curve import response_curve
 from sfd_hbm_ros.response.detached import detached_branches
 from sfd_hbm_ros.response.integrator import Integrator
+from sfd_hbm_ros.response.journey import first_place, travel
+from sfd_hbm_ros.response.jump_map import jump_map
 from sfd_hbm_ros.response.jumps import Direction, jumps
 from sfd_hbm_ros.response.ramp import Ramp
 from sfd_hbm_ros.response.summary import Summary
+from sfd_hbm_ros.response.tracker import Tracker
 
 from ..hbm.machines import misaligned_rotor
 from ..hbm.test_uncondensed import uncondensed_residual
@@ -101,6 +104,38 @@ def test_machine_jumps_where_the_branch_that_leaves_is_unstable():
     assert doubled.fold[doubled.values == up.value].all()
     assert (up.before.harmonics.revolutions, up.after.harmonics.revolutions) == (2, 1)
     assert Summary(one).hysteresis == pytest.approx(up.value - down.value)
+
+
+@pytest.mark.parametrize("direction", Direction)
+def test_jumps_ahead_are_those_of_the_journey(direction):
+    """Wherever the machine is on its way, the map tells the next jump, and none at a fork."""
+    one = curve(750.0, 1300.0)
+    found, rising = jump_map(one), direction is Direction.RUN_UP
+    expected = [jump.value for jump in jumps(one, direction)]
+    start = first_place(one.branches, rising)
+    for speed in np.linspace(755.0, 1295.0, 55)[:: 1 if rising else -1]:
+        there = travel(one, start, speed).place
+        ahead = found.outlook(there, 1.0 if rising else -1.0).next
+        left = [value for value in expected if (value > speed) == rising]
+        assert ahead.speed == (left[0] if left else direction.end * (1.0 if rising else -1.0))
+
+
+def test_tracker_moves_onto_the_responses_of_two_revolutions():
+    """The run-up never jumps; the way down from the lower response does once, at its fold."""
+    one = curve(750.0, 1300.0)
+    tracker = Tracker(one.balance)
+    tracker.adopt(one)
+    [down] = jumps(one, Direction.COAST_DOWN)
+    up = [tracker.predict(speed) for speed in np.linspace(760.0, 1290.0, 30)]
+    assert all(said.solution.converged and said.stable for said in up)
+    assert not any(said.jumped for said in up)
+    assert {said.solution.harmonics.revolutions for said in up} == {1, 2}
+    tracker.settle(up[-1].other)
+    way = np.linspace(1290.0, 760.0, 30)
+    back = [tracker.predict(speed) for speed in way]
+    [jumped] = [i for i, said in enumerate(back) if said.jumped]
+    assert way[jumped] < down.value < way[jumped - 1]
+    assert all(said.stable for said in back)
 
 
 def test_detached_branches_beside_responses_of_two_revolutions():

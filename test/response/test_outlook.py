@@ -4,6 +4,7 @@ The film is without inertia, for which the closed form is fastest.
 """
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -21,11 +22,13 @@ from sfd_hbm_ros.hbm.family import SpeedFamily
 from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.machine import override_all
 from sfd_hbm_ros.response.curve import ResponseCurve, response_curve
+from sfd_hbm_ros.response.forks import Fork
 from sfd_hbm_ros.response.judged import CurveBranch
 from sfd_hbm_ros.response.jump_map import jump_map
 from sfd_hbm_ros.response.jumps import Direction, jumps
 from sfd_hbm_ros.response.outlook import JumpAhead, Outlook, unknown_outlook
 from sfd_hbm_ros.response.place import places_at
+from sfd_hbm_ros.response.summary import Summary
 
 from ..hbm.machines import PAPER
 from ..hbm.test_circular_orbit import circular_orbits
@@ -81,22 +84,26 @@ def places(disk, speed):
     return sorted(found, key=lambda place: place.eccentricity)
 
 
-# jumps: of disk 2 at 3989 and 4162 rpm, of disk 1 at 3979 and 4017 rpm
+# jumps: of disk 2 at 3989 and 4162 rpm, of disk 1 at 3979 and 4017 rpm; the run-up on the upper
+# circle of disk 2 becomes quasi-periodic before
 @pytest.mark.parametrize(
-    ("disk", "rpm", "which"),
+    ("disk", "rpm", "which", "sign"),
     [
-        ("disk_2", 3800, 0),
-        ("disk_2", 4000, 0),
-        ("disk_2", 4000, 1),
-        ("disk_2", 4120, 0),
-        ("disk_2", 4250, 0),
-        ("disk_1", 3900, 0),
-        ("disk_1", 3990, 0),
-        ("disk_1", 3990, 1),
-        ("disk_1", 4100, 0),
+        (*place, sign)
+        for place, signs in {
+            ("disk_2", 3800, 0): (-1,),
+            ("disk_2", 4000, 0): (1, -1),
+            ("disk_2", 4000, 1): (-1,),
+            ("disk_2", 4120, 0): (1, -1),
+            ("disk_2", 4250, 0): (1, -1),
+            ("disk_1", 3900, 0): (1, -1),
+            ("disk_1", 3990, 0): (1, -1),
+            ("disk_1", 3990, 1): (1, -1),
+            ("disk_1", 4100, 0): (1, -1),
+        }.items()
+        for sign in signs
     ],
 )
-@pytest.mark.parametrize("sign", [1, -1])
 def test_jump_ahead_is_where_the_orbit_ends(disk, rpm, which, sign):
     place = places(disk, rpm * RPM)[which]
     outlook = map_of(disk).outlook(place, 2.0 * sign)
@@ -116,6 +123,39 @@ def test_jump_ahead_is_where_the_orbit_ends(disk, rpm, which, sign):
     assert outlook.margin == pytest.approx(abs(outlook.next.speed - rpm * RPM))
     assert outlook.relative_margin == pytest.approx(outlook.margin / (rpm * RPM))
     assert outlook.time_to_jump == pytest.approx(outlook.margin / 2.0)
+
+
+def test_jump_ahead_is_where_the_quasi_periodic_branch_ends():
+    """Onto it the run-up moves without a jump, and back from it the coast-down."""
+    curve = curve_of("disk_2")
+    upper, _, leaving = curve.branches
+    assert leaving.stable.all()
+    [(onset, _)] = curve.meeting(leaving, 0)
+    assert onset is upper
+    for rpm in (3800, 4000, 4120, 4150):
+        place = places("disk_2", rpm * RPM)[-1]
+        assert place.branch is (leaving if place.value > leaving.values[0] else upper)
+        outlook = map_of("disk_2").outlook(place, 1.0)
+        assert outlook.run_up.speed == leaving.values[-1] < upper.values[-1]
+        assert outlook.run_up.eccentricity_before == leaving.worst_eccentricity[-1]
+        landings = orbits("disk_2", (leaving.values[-1] - LOWEST * RPM) / STEP)
+        assert outlook.run_up.eccentricity_after == pytest.approx(landings[0], abs=1e-3)
+        assert outlook.coast_down.speed == math.inf
+
+
+def test_stretch_beyond_a_fork_where_no_stable_branch_leads_on_jumps_there():
+    """An unstable branch leaves, so that the machine jumps at the fork and lands beyond it."""
+    curve = curve_of("disk_1")
+    lost = circles([390.0, 410.0, 430.0], [0.3, 0.4, 0.5], [1, 2], Stop.RANGE)
+    leaving = circles([410.0, 400.0, 390.0], [0.4, 0.45, 0.5], [0, 1, 2], Stop.RANGE)
+    other = circles([390.0, 430.0], [0.8, 0.9], [], Stop.RANGE)
+    fork = Fork(((lost, 1), (leaving, 0)))
+    found = jump_map(ResponseCurve(curve.balance, curve.family, (lost, leaving, other), (fork,)))
+    [place] = places_at([lost], 400.0)
+    ahead = found.outlook(place, 1.0).next
+    assert (ahead.speed, ahead.eccentricity_before) == (410.0, pytest.approx(0.4))
+    assert ahead.eccentricity_after == pytest.approx(0.85)
+    assert found.outlook(place, -1.0).margin == math.inf
 
 
 @pytest.mark.parametrize("rpm", [3750, 3988, 3990, 4005, 4100, 4130, 4200])
@@ -197,6 +237,19 @@ def test_closed_branch_ends_at_its_folds_wherever_it_is_entered(start):
     [main] = places_at([below], 415.0)
     assert found.outlook(main, 1.0).bistable
     assert found.outlook(main, 1.0).margin == math.inf
+
+
+def test_hysteresis_is_between_jumps_that_belong_together():
+    """Up at 420 and 450 rad/s, down at 440 and 405: the first jumps of both ways do not."""
+    curve = curve_of("disk_1")
+    low = circles([390.0, 420.0], [0.2, 0.3], [], Stop.CLEARANCE)
+    middle = circles([405.0, 450.0], [0.5, 0.6], [], Stop.CLEARANCE)
+    high = circles([460.0, 440.0], [0.8, 0.9], [], Stop.CLEARANCE)
+    whole = ResponseCurve(curve.balance, curve.family, (low, middle, high))
+    summary = Summary(whole)
+    assert [jump.value for jump in summary.jumps] == [420.0, 450.0, 440.0, 405.0]
+    assert summary.hysteresis == 15.0
+    assert Summary(replace(whole, branches=(low,))).hysteresis is None
 
 
 @pytest.mark.parametrize(

@@ -95,6 +95,7 @@ class Study:
         """Response at a speed that a run-up meets: the first along the arc."""
         curve = self.curve(name)
         _, solution = next(solutions_at(curve.branches[0], rpm * RPM))
+        assert isinstance(solution, Solution)  # as the first branch of every curve has them
         return solution
 
     def amplitudes(
@@ -106,7 +107,7 @@ class Study:
 
 def _maxima(branch: CurveBranch, measure: Measure) -> Iterator[int]:
     """Stable points that are higher than their neighbours."""
-    heights = [measure(solution) for solution in branch.solutions]
+    heights = [measure(solution) for solution in branch.orbits]
     for i in range(1, len(heights) - 1):
         if branch.stable[i] and heights[i - 1] < heights[i] > heights[i + 1]:
             yield i
@@ -114,7 +115,7 @@ def _maxima(branch: CurveBranch, measure: Measure) -> Iterator[int]:
 
 def _refined(curve: ResponseCurve, branch: CurveBranch, i: int, measure: Measure) -> Peak:
     """The maximum near a point, between its neighbours."""
-    start = branch.solutions[i]
+    start = branch.orbits[i]
 
     def depth(speed: float) -> float:
         solution = solve(curve.balance, speed, start)
