@@ -95,7 +95,7 @@ class Watch:
         now = time.monotonic()
         tracked = self._tracked()
         self.alarm.update(self._outlook(tracked), _eccentricity(tracked), now)
-        signature = *self.signature, self._branch(tracked)
+        signature = *self.signature, self._branch(tracked), self._curves.usable
         if signature != self._published:
             for call in self.after_change:
                 call()

@@ -31,7 +31,7 @@ class IntegrationOptions:
     steps: int = 2
     stages: int = 12
     tolerance: float = 1e-6
-    resolution: float = 1e-5
+    resolution: float = 2e-6
 
     def __post_init__(self) -> None:
         if self.steps < 1 or SAMPLES % self.steps:

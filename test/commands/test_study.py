@@ -65,7 +65,7 @@ def test_finished_study_is_written_again_from_its_journal(output, tmp_path, caps
     assert up["probability"] == len(speeds) / VARIANTS
     assert up["speed_rpm"]["50%"] == pytest.approx(np.median(speeds))
     assert main(again) == 0
-    assert "12 of them from the journal" in capsys.readouterr().out
+    assert f"{VARIANTS} of them from the journal" in capsys.readouterr().out
 
 
 def test_samples_of_a_linear_response(tmp_path, capsys):

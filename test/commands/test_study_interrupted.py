@@ -57,7 +57,9 @@ def test_interrupted_in_a_terminal(tmp_path):
     status, err = ended(interrupted)
     assert status == 130
     assert err.startswith("sfd_hbm: interrupted: ")
-    assert err.endswith(f" of 12 variants are in {output}.journal; the same command goes on\n")
+    assert err.endswith(
+        f" of {VARIANTS} variants are in {output}.journal; the same command goes on\n"
+    )
     assert err.count("\n") == 1
     wait_for_end(children)
 

@@ -70,8 +70,11 @@ def excess(machine, model, w, e):
     return abs(stiffness - secant(damper, e, w)) * e * damper.clearance - abs(drive)
 
 
-def circular_orbits(machine, model, w):
-    """All eccentricities and complex positions of circular orbits, by a scan and bisection."""
+def circular_orbits(machine, model, w, beside_folds=False):
+    """All eccentricities and complex positions of circular orbits, by a scan and bisection.
+
+    Two that nearly coincide, as beside a fold, are only seen if they are asked for.
+    """
     [damper] = machine.dampers
     stiffness, drive = forward_whirl(model, w)
 
@@ -83,7 +86,7 @@ def circular_orbits(machine, model, w):
     # two roots between neighbours of the grid, as beside a fold, lie about an extremum
     sizes = np.abs(values)
     for i in np.flatnonzero((sizes[1:-1] < sizes[:-2]) & (sizes[1:-1] < sizes[2:])) + 1:
-        if values[i - 1] * values[i] > 0.0 and values[i] * values[i + 1] > 0.0:
+        if beside_folds and values[i - 1] * values[i] > 0.0 and values[i] * values[i + 1] > 0.0:
             sign, bounds = np.sign(values[i]), (grid[i - 1], grid[i + 1])
             nearest = minimize_scalar(lambda e, s=sign: s * imbalance(e), bounds=bounds)
             at = int(np.searchsorted(grid, nearest.x))

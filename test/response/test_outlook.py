@@ -60,7 +60,7 @@ def orbits(disk, step):
     """All eccentricities of circular orbits after a number of steps of the speed."""
     curve = curve_of(disk)
     speed = LOWEST * RPM + step * STEP
-    found = circular_orbits(curve.balance.machine, curve.balance.model, speed)
+    found = circular_orbits(curve.balance.machine, curve.balance.model, speed, beside_folds=True)
     return np.array([e for e, _ in found])
 
 

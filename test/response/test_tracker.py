@@ -60,7 +60,7 @@ def guided():
 @cache
 def orbits(rpm):
     """Eccentricities of the closed form's orbits, those of the detached branch left out."""
-    found = circular_orbits(balance().machine, balance().model, rpm * RPM)
+    found = circular_orbits(balance().machine, balance().model, rpm * RPM, beside_folds=True)
     return [e for e, _ in found if e < 0.85]
 
 
