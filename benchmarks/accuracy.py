@@ -10,14 +10,13 @@ import numpy as np
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.machine import override
+from sfd_hbm_ros.units import RPM
 from test.film.states import paper_film, random_states
 from test.film.test_short_derivatives import differences, far_from_switching, steps_of
 from test.film.test_short_quadrature import quadrature_force
 from test.hbm.machines import PAPER, random_machine
 from test.hbm.test_circular_orbit import PI_FILM, circular_orbits
 from test.hbm.test_uncondensed import uncondensed_residual
-
-RPM = np.pi / 30.0
 
 
 def film_force() -> float:

@@ -31,9 +31,9 @@ from sfd_hbm_ros.hbm.family import SpeedFamily
 from sfd_hbm_ros.hbm.solve import solution_at
 from sfd_hbm_ros.machine import read_machine
 from sfd_hbm_ros.rotor import Condensation
+from sfd_hbm_ros.units import RPM
 
 PAPER = Path(__file__).parents[1] / "config" / "paper_rotor.yaml"
-RPM = np.pi / 30.0
 RUNS = 5
 STAGES: tuple[tuple[str, Any, str], ...] = (
     ("film", ShortFilm, "linearise"),

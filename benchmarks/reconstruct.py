@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 from sfd_hbm_ros.film import film_of
 from sfd_hbm_ros.machine import Machine, override_all, read_machine
 from sfd_hbm_ros.rotor import Condensation, assemble
+from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
 
-RPM = np.pi / 30.0
 LBF_PER_INCH = 4.4482216152605 / 0.0254  # [N/m]
 SPEEDS = np.arange(3700.0, 4250.0, 5.0)  # [rpm]
 ECCENTRICITIES = np.linspace(0.02, 0.995, 400)

@@ -22,9 +22,9 @@ from sfd_hbm_ros.hbm.family import SpeedFamily
 from sfd_hbm_ros.hbm.options import ContinuationOptions
 from sfd_hbm_ros.hbm.solve import solution_at
 from sfd_hbm_ros.machine import Machine, read_machine
+from sfd_hbm_ros.units import RPM
 
 PAPER = read_machine(Path(__file__).parents[1] / "config" / "paper_rotor.yaml")
-RPM = np.pi / 30.0
 START, END = 3400.0 * RPM, 3600.0 * RPM
 OPTIONS = ContinuationOptions(first_step=0.02, longest_step=0.02, points=20)
 RUNS = 3

@@ -19,7 +19,7 @@ from sfd_hbm_ros.node.messages import read_stamp
 from sfd_hbm_ros.node.monitor_messages import read_eccentricities, read_warning
 from sfd_hbm_ros.node.run_point import DamperPoint, RunPoint
 from sfd_hbm_ros.node.run_warnings import WarningRecord
-from sfd_hbm_ros.node.speed_profile import RPM
+from sfd_hbm_ros.units import RPM
 
 _DEEP = 1000
 _LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)

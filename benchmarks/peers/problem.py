@@ -6,14 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from sfd_hbm_ros.hbm import NewtonOptions
 from sfd_hbm_ros.machine import read_machine
+from sfd_hbm_ros.units import RPM
 
 ROOT = Path(__file__).parents[2]
 PAPER = read_machine(ROOT / "config" / "paper_rotor.yaml")
-RPM = np.pi / 30.0
 SPEED = 3500.0 * RPM
 """Where steady states are computed [rad/s]: the film is well nonlinear, with an eccentricity of
 0.31, and a disturbance dies out by a factor of 0.86 a revolution."""

@@ -7,9 +7,7 @@ from typing import Any
 
 from sfd_hbm_ros.machine import Machine, MachineError, override_all, read_machine
 from sfd_hbm_ros.machine.document import parse
-
-RPM = math.pi / 30.0
-"""One revolution a minute [rad/s]."""
+from sfd_hbm_ros.units import RPM
 
 
 def add_machine(parser: argparse.ArgumentParser) -> None:

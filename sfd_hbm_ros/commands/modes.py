@@ -3,8 +3,9 @@
 import argparse
 from typing import Any
 
-from sfd_hbm_ros.commands.arguments import RPM, add_machine, print_json, read_changed_machine
+from sfd_hbm_ros.commands.arguments import add_machine, print_json, read_changed_machine
 from sfd_hbm_ros.rotor import assemble, critical_speeds, whirl_modes
+from sfd_hbm_ros.units import RPM
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

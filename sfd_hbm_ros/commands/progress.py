@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable
 from datetime import timedelta
 
-from sfd_hbm_ros.commands.arguments import RPM
+from sfd_hbm_ros.units import RPM
 
 _INTERVAL = 0.1  # between updates [s]
 _CELLS = 40

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from sfd_hbm_ros.commands.arguments import (
-    RPM,
     add_harmonics,
     add_machine,
     print_json,
@@ -19,6 +18,7 @@ from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.report.transient_table import write_transient
 from sfd_hbm_ros.response.observed import ObservedJump, observed_jumps
 from sfd_hbm_ros.response.transient import Transient, simulate
+from sfd_hbm_ros.units import RPM
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

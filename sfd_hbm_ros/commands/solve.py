@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from sfd_hbm_ros.commands.arguments import (
-    RPM,
     add_harmonics,
     add_machine,
     print_json,
@@ -15,6 +14,7 @@ from sfd_hbm_ros.commands.arguments import (
 )
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion, Solution, solve, stability
 from sfd_hbm_ros.response.curve import NoSolutionError
+from sfd_hbm_ros.units import RPM
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from sfd_hbm_ros.commands.arguments import RPM
 from sfd_hbm_ros.response.jumps import Direction
 from sfd_hbm_ros.study.results import Results
+from sfd_hbm_ros.units import RPM
 
 _PERCENTILES = (5, 50, 95)
 

@@ -5,7 +5,6 @@ import time
 from dataclasses import replace
 
 from sfd_hbm_ros.commands.arguments import (
-    RPM,
     add_harmonics,
     add_machine,
     print_json,
@@ -25,6 +24,7 @@ from sfd_hbm_ros.response.curve import (
 )
 from sfd_hbm_ros.response.detached import detached_branches
 from sfd_hbm_ros.response.summary import Summary
+from sfd_hbm_ros.units import RPM
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

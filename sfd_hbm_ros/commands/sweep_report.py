@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.commands.arguments import RPM
 from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.response.judged import CurveBranch
 from sfd_hbm_ros.response.summary import Mark, Summary
+from sfd_hbm_ros.units import RPM
 
 
 def data_of(summary: Summary, path: str | None, seconds: float) -> dict[str, Any]:

@@ -10,12 +10,13 @@ import numpy as np
 
 from sfd_hbm_ros.hbm import Harmonics, JournalMotion
 from sfd_hbm_ros.node.played_machine import no_other, thrown
-from sfd_hbm_ros.node.speed_profile import RPM, SpeedProfile
+from sfd_hbm_ros.node.speed_profile import SpeedProfile
 from sfd_hbm_ros.response.curve import NoSolutionError, ResponseCurve
 from sfd_hbm_ros.response.guide import Guide
 from sfd_hbm_ros.response.integration_options import SAMPLES
 from sfd_hbm_ros.response.integrator import ClearanceError, Integrator
 from sfd_hbm_ros.response.ramp import Ramp
+from sfd_hbm_ros.units import RPM
 
 
 class IntegratedMachine:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 from sfd_hbm_ros.node.diagnostics import Level, Status
 from sfd_hbm_ros.response.advice import advice
 from sfd_hbm_ros.response.jump_alarm import JumpAlarm
 from sfd_hbm_ros.response.outlook import Outlook
 from sfd_hbm_ros.response.tracked import BranchName
-
-_RPM = math.pi / 30.0  # rad/s
+from sfd_hbm_ros.units import RPM
 
 
 def jump_status(
@@ -43,14 +40,14 @@ def jump_status(
         "branch": str(branch),
         "bistable": "unknown" if outlook.bistable is None else str(outlook.bistable).lower(),
         "next_jump": str(ahead.direction),
-        "next_jump_rpm": _number(ahead.speed / _RPM),
-        "margin_rpm": _number(outlook.margin / _RPM),
+        "next_jump_rpm": _number(ahead.speed / RPM),
+        "margin_rpm": _number(outlook.margin / RPM),
         "margin_percent": _number(100.0 * outlook.relative_margin),
         "time_to_jump_s": _number(outlook.time_to_jump),
         "eccentricity": _number(eccentricity),
         "eccentricity_after": _number(ahead.eccentricity_after),
-        "run_up_jump_rpm": _number(outlook.run_up.speed / _RPM),
-        "coast_down_jump_rpm": _number(outlook.coast_down.speed / _RPM),
+        "run_up_jump_rpm": _number(outlook.run_up.speed / RPM),
+        "coast_down_jump_rpm": _number(outlook.coast_down.speed / RPM),
         "alarm": str(alarm.state(now)),
         "since_s": _number(now - leading.since),
         "occurrences": str(leading.occurrences),

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from sfd_hbm_ros.hbm import JournalMotion, Solution
-from sfd_hbm_ros.node.speed_profile import RPM, SpeedProfile
+from sfd_hbm_ros.node.speed_profile import SpeedProfile
 from sfd_hbm_ros.response.curve import NoSolutionError, ResponseCurve
 from sfd_hbm_ros.response.tracker import Tracker
+from sfd_hbm_ros.units import RPM
 
 
 class JumpError(ValueError):

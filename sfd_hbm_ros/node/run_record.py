@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from sfd_hbm_ros.node.joining import Joining
 from sfd_hbm_ros.node.run_point import DamperPoint, RunPoint
-from sfd_hbm_ros.node.speed_profile import RPM
+from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
 

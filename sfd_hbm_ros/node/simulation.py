@@ -12,9 +12,10 @@ from sfd_hbm_ros.machine.rules import choice, integer, number, title
 from sfd_hbm_ros.node.disturbance import DisturbanceSettings
 from sfd_hbm_ros.node.integrated_machine import IntegratedMachine
 from sfd_hbm_ros.node.played_machine import BareSpeed, PlayedMachine, TrackedMachine
-from sfd_hbm_ros.node.speed_profile import RPM, SpeedProfile
+from sfd_hbm_ros.node.speed_profile import SpeedProfile
 from sfd_hbm_ros.response.curve import ResponseCurve, response_curve
 from sfd_hbm_ros.response.judged import Progress
+from sfd_hbm_ros.units import RPM
 
 _MOST_HARMONICS = 31
 _BESIDE = 0.02  # part of itself by which the curve's range goes beyond that of the speed

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Annotated
 
 from sfd_hbm_ros.machine.parts import Part
 from sfd_hbm_ros.machine.rules import integer, number
-
-RPM = 2.0 * math.pi / 60.0
-"""One revolution per minute [rad/s]."""
+from sfd_hbm_ros.units import RPM
 
 _STEPS = 6  # of Newton's method, which doubles the digits with each
 _TOP_RPM = 1e6  # no rotor turns faster; the angle would lose its digits

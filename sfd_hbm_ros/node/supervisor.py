@@ -9,7 +9,6 @@ Copy it, and put decisions of your own between the steps of `supervise`.
 
 from __future__ import annotations
 
-import math
 import sys
 import time
 from collections.abc import Callable
@@ -28,8 +27,8 @@ from std_msgs.msg import Header
 from std_srvs.srv import Trigger
 
 from sfd_hbm_ros.node.process import run
+from sfd_hbm_ros.units import RPM
 
-_RPM = math.pi / 30.0  # rad/s
 _QUEUE = 10
 # As the predictor publishes them: the last message is there for whoever comes later.
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -97,7 +96,7 @@ class Supervisor(Node):
         Where the machine has just changed, the answer waits until the new curve is there.
         """
         header = Header(stamp=stamp.to_msg())
-        self._question.publish(JointState(header=header, velocity=[self.rpm * _RPM]))
+        self._question.publish(JointState(header=header, velocity=[self.rpm * RPM]))
         self._wait(
             lambda: self._answer and self._answer[0].header.stamp == header.stamp, "an answer"
         )

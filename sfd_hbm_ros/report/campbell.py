@@ -16,8 +16,9 @@ from sfd_hbm_ros.report.style import (
     label_abscissa,
     legend,
 )
-from sfd_hbm_ros.report.units import HERTZ, RPM, grouped
+from sfd_hbm_ros.report.units import HERTZ, grouped
 from sfd_hbm_ros.rotor import CriticalSpeed, Direction, WhirlMode
+from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
 

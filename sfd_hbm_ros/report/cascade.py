@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from sfd_hbm_ros.hbm import JournalMotion, Solution
 from sfd_hbm_ros.report.stretches import stretches
 from sfd_hbm_ros.report.style import INK, LINE, QUIET
-from sfd_hbm_ros.report.units import MICROMETRE, RPM, grouped
+from sfd_hbm_ros.report.units import MICROMETRE, grouped
 from sfd_hbm_ros.report.vibration import vibration
 from sfd_hbm_ros.response.curve import ResponseCurve
 from sfd_hbm_ros.response.judged import CurveBranch
+from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from sfd_hbm_ros.report.units import RPM
 from sfd_hbm_ros.study.results import Results
 from sfd_hbm_ros.study.task import Outcome
+from sfd_hbm_ros.units import RPM
 
 _OUTCOMES: dict[str, Callable[[Outcome], Any]] = {
     "run_up_rpm": lambda one: _rpm(one.run_up),

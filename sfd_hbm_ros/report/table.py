@@ -7,9 +7,9 @@ from pathlib import Path
 
 from sfd_hbm_ros.hbm import Harmonics, Solution
 from sfd_hbm_ros.report.abscissa import Abscissa
-from sfd_hbm_ros.report.units import RPM
 from sfd_hbm_ros.response.curve import ResponseCurve
 from sfd_hbm_ros.response.responses import Response
+from sfd_hbm_ros.units import RPM
 
 
 def write_table(curve: ResponseCurve, path: str | Path) -> None:

@@ -5,11 +5,12 @@ from collections.abc import Iterable
 from matplotlib.axes import Axes
 
 from sfd_hbm_ros.report.style import INK, LINE, QUIET, SECOND, label_abscissa, legend
-from sfd_hbm_ros.report.units import RPM, grouped
+from sfd_hbm_ros.report.units import grouped
 from sfd_hbm_ros.response.jumps import Direction
 from sfd_hbm_ros.response.observed import ObservedJump
 from sfd_hbm_ros.response.ramp import Ramp
 from sfd_hbm_ros.response.transient import Transient
+from sfd_hbm_ros.units import RPM
 
 _TITLES = {
     Direction.RUN_UP: "run-up at {} rpm/s \N{RIGHTWARDS ARROW}",

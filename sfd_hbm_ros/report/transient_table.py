@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from sfd_hbm_ros.report.units import RPM
 from sfd_hbm_ros.response.transient import Transient
+from sfd_hbm_ros.units import RPM
 
 
 def write_transient(transient: Transient, path: str | Path) -> None:

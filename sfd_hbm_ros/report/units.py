@@ -2,9 +2,6 @@
 
 import math
 
-RPM = math.pi / 30.0
-"""One revolution a minute [rad/s]."""
-
 HERTZ = 2.0 * math.pi
 """One cycle a second [rad/s]."""
 

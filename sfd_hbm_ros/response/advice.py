@@ -7,8 +7,7 @@ from sfd_hbm_ros.response.alarm_settings import Level
 from sfd_hbm_ros.response.jump_alarm import JumpAlarm
 from sfd_hbm_ros.response.jumps import Direction
 from sfd_hbm_ros.response.outlook import JumpAhead, Outlook
-
-_RPM = math.pi / 30.0  # rad/s
+from sfd_hbm_ros.units import RPM
 
 _STANDING = {
     AlarmState.NORMAL: "",
@@ -47,9 +46,9 @@ def _about_jump(outlook: Outlook) -> str:
     other = "; another stable response exists at this speed" if outlook.bistable else ""
     if math.isinf(jump.speed):
         return f"No jump ahead{other}"
-    rpm, percent = outlook.margin / _RPM, 100.0 * outlook.relative_margin
+    rpm, percent = outlook.margin / RPM, 100.0 * outlook.relative_margin
     distance = f"{rpm:.0f} rpm ({percent:.1f} %)"
-    return f"{_landing(jump)} expected at {jump.speed / _RPM:.0f} rpm, {distance} " + _way(outlook)
+    return f"{_landing(jump)} expected at {jump.speed / RPM:.0f} rpm, {distance} " + _way(outlook)
 
 
 def _landing(jump: JumpAhead) -> str:

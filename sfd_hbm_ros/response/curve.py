@@ -15,6 +15,7 @@ from sfd_hbm_ros.hbm.selected_branch import SelectedBranch
 from sfd_hbm_ros.hbm.selection import SelectedBalance
 from sfd_hbm_ros.response.forks import Fork, leaving_branches
 from sfd_hbm_ros.response.judged import CurveBranch, Progress, judged
+from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
 
@@ -176,4 +177,4 @@ def _solved_branch(
 
 
 def _no_solution(speed: float, reason: str) -> NoSolutionError:
-    return NoSolutionError(f"no solution at {speed * 30.0 / np.pi:g} rpm: {reason}")
+    return NoSolutionError(f"no solution at {speed / RPM:g} rpm: {reason}")

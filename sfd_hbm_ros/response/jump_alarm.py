@@ -12,8 +12,7 @@ from sfd_hbm_ros.machine.rules import number
 from sfd_hbm_ros.response.alarm import Alarm, AlarmMemory, AlarmState
 from sfd_hbm_ros.response.alarm_settings import AlarmSettings, Level
 from sfd_hbm_ros.response.outlook import Outlook
-
-_RPM = math.pi / 30.0  # rad/s
+from sfd_hbm_ros.units import RPM
 
 
 class Answer(NamedTuple):
@@ -149,7 +148,7 @@ def _present(
     Every comparison with NaN is false, so that what is unknown leaves things as they were.
     """
     small = {
-        "margin_{}_rpm": outlook.margin / _RPM,
+        "margin_{}_rpm": outlook.margin / RPM,
         "margin_{}_percent": 100.0 * outlook.relative_margin,
         "time_{}": outlook.time_to_jump,
     }

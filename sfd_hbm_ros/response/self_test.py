@@ -14,8 +14,8 @@ from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.family import SpeedFamily
 from sfd_hbm_ros.hbm.options import ContinuationOptions
 from sfd_hbm_ros.machine import Damper, Machine, override_all
+from sfd_hbm_ros.units import RPM
 
-_RPM = math.pi / 30.0  # rad/s
 _EXACT = 1e-9  # relative, to which closed forms hold where nothing is iterated
 _SOLVED = 1e-8  # of the clearance, to which closed forms hold for solutions
 _SPEED, _WIDTH = 0.01, 0.10  # relative, as the paper's claims are judged: config/paper_cases.yaml
@@ -153,15 +153,15 @@ def _jump(machine: Machine, start: float, end: float) -> Generator[None, None, f
 def _branch(machine: Machine, start: float, end: float) -> Iterator[tuple[float, float]]:
     """Speeds [rpm] and eccentricities along a branch, up to where it turns back or closes."""
     balance = HarmonicBalance(machine, Harmonics(1))
-    first = solve(balance, start * _RPM)
+    first = solve(balance, start * RPM)
     branch = Branch(
         SpeedFamily(balance),
         first.coefficients.ravel(),
-        start * _RPM,
-        end * _RPM,
+        start * RPM,
+        end * RPM,
         options=_COARSE,
     )
     for point in branch:
         if (end - start) * point.tangent[-1] <= 0.0:
             return
-        yield float(point.value / _RPM), point.eccentricity
+        yield float(point.value / RPM), point.eccentricity

@@ -11,6 +11,7 @@ from sfd_hbm_ros.response.curve import NoSolutionError
 from sfd_hbm_ros.response.integration_options import DEFAULTS, IntegrationOptions
 from sfd_hbm_ros.response.integrator import ClearanceError, Integrator, State
 from sfd_hbm_ros.response.ramp import Ramp
+from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -94,7 +95,7 @@ def simulate(
     ramp = Ramp.between(start, end, rate)
     solution = solve(balance, start)
     if not solution.converged:
-        rpm = start * 30.0 / np.pi
+        rpm = start / RPM
         raise NoSolutionError(f"no solution to start from at {rpm:g} rpm: {solution.message}")
     integrator = Integrator(balance, max(start, end), options)
     return run(integrator, ramp, integrator.start(solution), progress)
@@ -114,7 +115,7 @@ def run(
         try:
             state, positions = integrator.revolution(ramp, number, state)
         except ClearanceError as error:
-            raise NoSolutionError(f"{error}, at {speed * 30.0 / np.pi:g} rpm") from error
+            raise NoSolutionError(f"{error}, at {speed / RPM:g} rpm") from error
         orbit = positions.reshape(len(positions), -1, 2)
         eccentricity = np.linalg.norm(orbit, axis=-1) / clearances
         greatest[number], mean[number] = eccentricity.max(axis=0), eccentricity.mean(axis=0)

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.hbm.options import ContinuationOptions
 from sfd_hbm_ros.report.paper.cases import Case, Cases
-from sfd_hbm_ros.report.units import RPM
 from sfd_hbm_ros.response.curve import ResponseCurve, response_curve
 from sfd_hbm_ros.response.detached import detached_branches
 from sfd_hbm_ros.response.judged import CurveBranch
+from sfd_hbm_ros.units import RPM
 
 _SPEEDS = (
     2  # at which detached branches are looked for, besides the speeds that suggest themselves

@@ -16,7 +16,7 @@ from sfd_hbm_ros.report.paper.judging import (
 )
 from sfd_hbm_ros.report.paper.study import Study, journal, vibration
 from sfd_hbm_ros.report.paper.unbalance import width_of_hysteresis
-from sfd_hbm_ros.report.units import RPM
+from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from sfd_hbm_ros.report.paper.cases import Claim
 from sfd_hbm_ros.report.paper.judging import Judgement, falling, judged, listed, near, rising
 from sfd_hbm_ros.report.paper.loads import harmonics
 from sfd_hbm_ros.report.paper.study import Study, journal
-from sfd_hbm_ros.report.units import RPM
+from sfd_hbm_ros.units import RPM
 
 
 def p8(study: Study, claim: Claim) -> dict[str, Judgement]:

@@ -10,11 +10,11 @@ from scipy.optimize import minimize_scalar
 from sfd_hbm_ros.hbm import JournalMotion, Solution, solve
 from sfd_hbm_ros.report.paper.cases import Numbers, Range
 from sfd_hbm_ros.report.paper.compute import Computed
-from sfd_hbm_ros.report.units import RPM
 from sfd_hbm_ros.response.curve import ResponseCurve
 from sfd_hbm_ros.response.judged import CurveBranch
 from sfd_hbm_ros.response.jumps import solutions_at
 from sfd_hbm_ros.response.summary import Summary
+from sfd_hbm_ros.units import RPM
 
 _ACCURACY = 0.02 * RPM  # to which the speed of a peak is found [rad/s]
 

@@ -7,7 +7,7 @@ from sfd_hbm_ros.report.paper.cases import Claim
 from sfd_hbm_ros.report.paper.disturbed import third_harmonic
 from sfd_hbm_ros.report.paper.judging import Judgement, judged, listed, near, undecided
 from sfd_hbm_ros.report.paper.study import Study, journal
-from sfd_hbm_ros.report.units import RPM
+from sfd_hbm_ros.units import RPM
 
 
 def p1(study: Study, claim: Claim) -> dict[str, Judgement]:
