@@ -1,11 +1,11 @@
 """The variants of a study as a table of numbers."""
 
-import csv
 import importlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from sfd_hbm_ros.report.csv_file import write_csv
 from sfd_hbm_ros.study.results import Results
 from sfd_hbm_ros.study.task import Outcome
 from sfd_hbm_ros.units import RPM
@@ -41,7 +41,7 @@ def study_writer(path: Path) -> Callable[[Results], None]:
         If it shall be Parquet, and pyarrow is not installed.
     """
     if path.suffix != ".parquet":
-        return lambda results: _write_csv(results, path)
+        return lambda results: _write_csv(_columns(results), path)
     try:
         arrow = importlib.import_module("pyarrow")
         parquet = importlib.import_module("pyarrow.parquet")
@@ -53,12 +53,8 @@ def study_writer(path: Path) -> Callable[[Results], None]:
     return lambda results: parquet.write_table(arrow.table(_columns(results)), path)
 
 
-def _write_csv(results: Results, path: Path) -> None:
-    columns = _columns(results)
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(zip(*columns.values(), strict=True))
+def _write_csv(columns: dict[str, list[Any]], path: Path) -> None:
+    write_csv(path, columns, zip(*columns.values(), strict=True))
 
 
 def _columns(results: Results) -> dict[str, list[Any]]:

@@ -1,12 +1,12 @@
 """A response curve as a table of numbers."""
 
-import csv
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 
 from sfd_hbm_ros.hbm import Harmonics, Solution
 from sfd_hbm_ros.report.abscissa import Abscissa
+from sfd_hbm_ros.report.csv_file import write_csv
 from sfd_hbm_ros.response.curve import ResponseCurve
 from sfd_hbm_ros.response.responses import Response
 from sfd_hbm_ros.units import RPM
@@ -35,10 +35,7 @@ def write_table(curve: ResponseCurve, path: str | Path) -> None:
     OSError
         If the file cannot be written.
     """
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(_header(curve))
-        writer.writerows(_rows(curve))
+    write_csv(path, _header(curve), _rows(curve))
 
 
 def _header(curve: ResponseCurve) -> list[str]:

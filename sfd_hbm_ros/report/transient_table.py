@@ -1,10 +1,10 @@
 """A run in time as a table of numbers."""
 
-import csv
 from pathlib import Path
 
 import numpy as np
 
+from sfd_hbm_ros.report.csv_file import write_csv
 from sfd_hbm_ros.response.transient import Transient
 from sfd_hbm_ros.units import RPM
 
@@ -31,7 +31,4 @@ def write_transient(transient: Transient, path: str | Path) -> None:
     for name, greatest in transient.eccentricity_max.items():
         columns[f"{name}.eccentricity_max"] = greatest
         columns[f"{name}.eccentricity_mean"] = transient.eccentricity_mean[name]
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(np.column_stack(list(columns.values())).tolist())
+    write_csv(path, columns, np.column_stack(list(columns.values())).tolist())
