@@ -1,7 +1,6 @@
 """The reference paper: its figures computed again, and its claims beside what was found."""
 
 import argparse
-import sys
 import textwrap
 import time
 from collections.abc import Sequence
@@ -9,12 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from sfd_hbm_ros.commands.arguments import add_json, print_json
-from sfd_hbm_ros.report.paper.cases import cases_file, read_cases
+from sfd_hbm_ros.commands.progress import Progress
+from sfd_hbm_ros.report.paper.cases import Cases, cases_file, read_cases
 from sfd_hbm_ros.report.paper.claims import JudgedClaim, judge
-from sfd_hbm_ros.report.paper.compute import Computed, compute
+from sfd_hbm_ros.report.paper.compute import compute
 from sfd_hbm_ros.report.paper.judging import Verdict
-from sfd_hbm_ros.report.paper.pictures import draw_figures
 from sfd_hbm_ros.report.paper.study import Study
+from sfd_hbm_ros.response.curve import ResponseCurve
 
 _WIDTH = 99
 
@@ -29,14 +29,14 @@ def run(chosen: argparse.Namespace) -> None:
     """Compute the paper's curves, judge its claims, and draw its figures."""
     started = time.perf_counter()
     cases = read_cases(cases_file())
-    computed: dict[str, Computed] = {}
-    for name, result in compute(cases, cases.curves):
-        computed[name] = result
-        _show(f"{len(computed)} of {len(cases.curves)} curves")
-    study = Study(computed, cases.agreement, cases.criticals_rpm)
-    claims = list(judge(cases, study))
-    figures = draw_figures(cases, study, chosen.figures) if chosen.figures else []
-    _show("")
+    computed: dict[str, ResponseCurve] = {}
+    with Progress(lambda n, _: f"{n} of {len(cases.curves)} curves") as progress:
+        for name, curve in compute(cases, cases.curves):
+            computed[name] = curve
+            progress(len(computed))
+        study = Study(computed, cases.agreement, cases.criticals_rpm)
+        claims = list(judge(cases, study))
+        figures = _draw(cases, study, chosen.figures) if chosen.figures else []
     seconds = time.perf_counter() - started
     if chosen.json:
         print_json(_data(claims, figures, seconds))
@@ -45,10 +45,10 @@ def run(chosen: argparse.Namespace) -> None:
         print(f"\n{len(computed)} curves in {seconds:.0f} s")
 
 
-def _show(line: str) -> None:
-    """Progress, where there is a terminal."""
-    if sys.stderr.isatty():
-        print(f"\r\x1b[K{line}", end="", file=sys.stderr, flush=True)
+def _draw(cases: Cases, study: Study, folder: Path) -> list[Path]:
+    from sfd_hbm_ros.report.paper.pictures import draw_figures  # matplotlib takes its time
+
+    return draw_figures(cases, study, folder)
 
 
 def _data(claims: Sequence[JudgedClaim], figures: Sequence[Path], seconds: float) -> Any:

@@ -4,30 +4,19 @@ import multiprocessing
 import os
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import replace
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.hbm.options import ContinuationOptions
 from sfd_hbm_ros.report.paper.cases import Case, Cases
 from sfd_hbm_ros.response.curve import ResponseCurve, response_curve
 from sfd_hbm_ros.response.detached import detached_branches
-from sfd_hbm_ros.response.judged import CurveBranch
 from sfd_hbm_ros.units import RPM
 
-_SPEEDS = (
-    2  # at which detached branches are looked for, besides the speeds that suggest themselves
-)
+_SPEEDS = 2  # at which detached branches are looked for, besides those that suggest themselves
 
 
-@dataclass(frozen=True, eq=False)
-class Computed:
-    """The response of one case, with the detached branches that were looked for."""
-
-    curve: ResponseCurve
-    detached: tuple[CurveBranch, ...]
-
-
-def compute(cases: Cases, names: Iterable[str]) -> Iterator[tuple[str, Computed]]:
+def compute(cases: Cases, names: Iterable[str]) -> Iterator[tuple[str, ResponseCurve]]:
     """Compute curves, a process a core, and yield each with its name as it is ready.
 
     Raises
@@ -46,13 +35,13 @@ def compute(cases: Cases, names: Iterable[str]) -> Iterator[tuple[str, Computed]
             pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _compute(case: Case) -> Computed:
+def _compute(case: Case) -> ResponseCurve:
     balance = HarmonicBalance(case.machine, Harmonics(case.harmonics))
     options = ContinuationOptions(eccentricity=case.closest)
     lowest, highest = case.speeds_rpm
     curve = response_curve(balance, lowest * RPM, highest * RPM, options)
     if case.detached_rpm is None:
-        return Computed(curve, ())
+        return curve
     lowest, highest = case.detached_rpm
     found = detached_branches(curve, lowest * RPM, highest * RPM, _SPEEDS, options)
-    return Computed(curve, tuple(found))
+    return replace(curve, detached=tuple(found))

@@ -1,6 +1,5 @@
 """The figures of the paper, drawn from the computed curves."""
 
-from dataclasses import replace
 from pathlib import Path
 
 from matplotlib.axes import Axes
@@ -14,7 +13,6 @@ from sfd_hbm_ros.report.paper.cases import Cases, Figure
 from sfd_hbm_ros.report.paper.study import Study, journal
 from sfd_hbm_ros.report.spectrum import draw_spectra, draw_spectrum
 from sfd_hbm_ros.report.style import legend, new_figure, save
-from sfd_hbm_ros.response.curve import ResponseCurve
 
 _MANY = 6  # curves whose legend would cover them
 
@@ -42,7 +40,7 @@ def draw_figures(cases: Cases, study: Study, folder: Path) -> list[Path]:
 def _response(study: Study, figure: Figure) -> Picture:
     """Response curves with their detached branches; a single one with its jumps."""
     picture, [axes] = new_figure()
-    curves = {label: _with_detached(study, name) for label, name in figure.curves.items()}
+    curves = {label: study.curve(name) for label, name in figure.curves.items()}
     [damper] = next(iter(curves.values())).dampers
     if len(curves) == 1:
         [(label, curve)] = curves.items()
@@ -53,12 +51,6 @@ def _response(study: Study, figure: Figure) -> Picture:
     if len(curves) >= _MANY:
         _move_legend_aside(axes)
     return picture
-
-
-def _with_detached(study: Study, name: str) -> ResponseCurve:
-    """The response curve of a case with its detached branches, for a picture alone."""
-    curve = study.curve(name)
-    return replace(curve, detached=study.computed[name].detached)
 
 
 def _orbits(study: Study, figure: Figure) -> Picture:

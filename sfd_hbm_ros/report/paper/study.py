@@ -9,7 +9,6 @@ from scipy.optimize import minimize_scalar
 
 from sfd_hbm_ros.hbm import JournalMotion, Solution, solve
 from sfd_hbm_ros.report.paper.cases import Numbers, Range
-from sfd_hbm_ros.report.paper.compute import Computed
 from sfd_hbm_ros.response.curve import ResponseCurve
 from sfd_hbm_ros.response.judged import CurveBranch
 from sfd_hbm_ros.response.jumps import solutions_at
@@ -53,21 +52,21 @@ class Study:
 
     Attributes
     ----------
-    computed : mapping of str to Computed
-        The cases by their names.
+    computed : mapping of str to ResponseCurve
+        The cases' curves by their names.
     agreement : mapping of str to float
         Within what numbers agree with the paper's, by their kind.
     criticals_rpm : (float, float)
         Range of the speed in which the first critical speed lies [rpm].
     """
 
-    computed: Mapping[str, Computed]
+    computed: Mapping[str, ResponseCurve]
     agreement: Numbers
     criticals_rpm: Range
 
     def curve(self, name: str) -> ResponseCurve:
         """Response curve of a case."""
-        return self.computed[name].curve
+        return self.computed[name]
 
     def summary(self, name: str) -> Summary:
         """Folds and jumps of a case."""

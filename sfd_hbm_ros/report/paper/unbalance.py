@@ -97,7 +97,7 @@ def _beside(study: Study, name: str, width: float) -> str:
     """What detached branches add to a hysteresis."""
     spans = [
         (branch.speed.min() / RPM, branch.speed.max() / RPM)
-        for branch in study.computed[name].detached
+        for branch in study.curve(name).detached
     ]
     if not spans:
         return ""
