@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,7 +103,8 @@ def response_curve(
         If no solution was found at an end of the range.
     """
     family = SpeedFamily(balance)
-    return _curve(family, lowest, highest, options, progress, _solved_branch)
+    branch_from = partial(_solved_branch, family, options)
+    return _curve(family, lowest, highest, options, progress, branch_from)
 
 
 def selected_curve(
@@ -119,9 +121,7 @@ def selected_curve(
     computed in the whole group.
     """
 
-    def branch_from(
-        family: MachineFamily, start: float, end: float, options: ContinuationOptions | None
-    ) -> Branch:
+    def branch_from(start: float, end: float) -> Branch:
         try:
             return SelectedBranch(balance, start, end, options)
         except ArithmeticError as error:
@@ -145,7 +145,8 @@ def parameter_curve(
     Further parameters and errors are those of `response_curve`; `path` is dotted.
     """
     family = ParameterFamily(balance, speed, path)
-    return _curve(family, start, end, options, progress, _solved_branch)
+    branch_from = partial(_solved_branch, family, options)
+    return _curve(family, start, end, options, progress, branch_from)
 
 
 def _curve(
@@ -154,19 +155,19 @@ def _curve(
     end: float,
     options: ContinuationOptions | None,
     progress: Progress | None,
-    branch_from: Callable[[MachineFamily, float, float, ContinuationOptions | None], Branch],
+    branch_from: Callable[[float, float], Branch],
 ) -> ResponseCurve:
-    first = judged(branch_from(family, start, end, options), progress)
+    first = judged(branch_from(start, end), progress)
     branches = [first]
     if first.stop is not Stop.RANGE or first.values[-1] != end:
-        branches.append(judged(branch_from(family, end, start, options), progress))
+        branches.append(judged(branch_from(end, start), progress))
     bounds = min(start, end), max(start, end)
     switched, forks = leaving_branches(family, branches, bounds, options, progress)
     return ResponseCurve(family.balance, family, (*branches, *switched), forks)
 
 
 def _solved_branch(
-    family: MachineFamily, start: float, end: float, options: ContinuationOptions | None
+    family: MachineFamily, options: ContinuationOptions | None, start: float, end: float
 ) -> Branch:
     """The branch that begins with the solution at `start`, towards `end`."""
     equations = family.at(start)

@@ -15,6 +15,7 @@ from sfd_hbm_ros.hbm import (
 )
 from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.events import locate
+from sfd_hbm_ros.hbm.family import FamilyMember
 from sfd_hbm_ros.hbm.newton import NewtonResult, newton
 from sfd_hbm_ros.hbm.options import ContinuationOptions
 from sfd_hbm_ros.hbm.points import Point
@@ -70,12 +71,12 @@ def follow(way: Way, x: Array, orientation: float | None = None) -> Followed:
     return at_once or _by_arclength(way, x)
 
 
-def balanced(equations: Equations, result: NewtonResult) -> bool:
-    """Whether Newton's method converged, or came as near as rounding allows."""
+def balanced(equations: FamilyMember, result: NewtonResult, rounding: float = _ROUNDING) -> bool:
+    """Whether Newton's method converged, or left only a part of the rotor's forces: rounding."""
     if result.outcome.converged:
         return True
-    forces = float(np.linalg.norm(equations.linear @ result.x))
-    return result.residuals[-1] * equations.load <= _ROUNDING * forces
+    forces = float(np.linalg.norm(equations.rotor_force(result.x)))
+    return result.residuals[-1] * equations.load <= rounding * forces
 
 
 def holds(balance: HarmonicBalance, solution: Solution) -> bool:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -89,7 +90,7 @@ class CurveBranch:
         return np.array([one.eccentricity_max for one in self.solutions])
 
 
-_STRIDE = 8  # points of a quasi-periodic branch of which the first and the last are judged
+_STRIDE = 8  # of a quasi-periodic branch, from one point that is judged to the next
 
 
 class _Judged(NamedTuple):
@@ -128,21 +129,20 @@ def judged(branch: Branch, progress: Progress | None = None) -> CurveBranch:
 def _judged_points(branch: Branch, followed: list[tuple[Point, bool]]) -> Iterator[_Judged]:
     """Every point with its stability."""
     stride = _STRIDE if isinstance(branch, QuasiPeriodicBranch) else 1
-    for first in range(0, len(followed), stride):
-        part = followed[first : first + stride]
-        last = _judge(branch.family, *part[-1])
-        kind = last.instability
-        if len(part) == 1:
-            yield last
-            continue
-        begin = _judge(branch.family, *part[0])
-        alike = begin.instability is kind and not any(fold for _, fold in part)
-        yield begin
-        for point, fold in part[1:-1]:
-            at = branch.family.at(point.value)
-            known = _Judged(point, response_at(at, point.x), kind, False)
-            yield known if alike else _judge(branch.family, point, fold)
-        yield last
+    last = len(followed) - 1
+    marks = [*range(0, last, stride), last]
+    known = {mark: _judge(branch.family, *followed[mark]) for mark in marks}
+    for begin, end in pairwise(marks):
+        yield known[begin]
+        kind = known[begin].instability
+        folds = any(fold for _, fold in followed[begin : end + 1])
+        for point, fold in followed[begin + 1 : end]:
+            if folds or known[end].instability is not kind:
+                yield _judge(branch.family, point, fold)
+            else:
+                response = response_at(branch.family.at(point.value), point.x)
+                yield _Judged(point, response, kind, False)
+    yield known[last]
 
 
 def _judge(family: Family, point: Point, fold: bool) -> _Judged:

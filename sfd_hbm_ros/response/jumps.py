@@ -5,12 +5,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
-import numpy as np
-
 from sfd_hbm_ros.hbm import NewtonOptions
 from sfd_hbm_ros.hbm.continuation import ROUNDING
 from sfd_hbm_ros.hbm.newton import newton
 from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.following import balanced
 from sfd_hbm_ros.response.journey import Leg, first_place, legs
 from sfd_hbm_ros.response.judged import CurveBranch
 from sfd_hbm_ros.response.place import Place, places_at
@@ -86,6 +85,5 @@ def response_on(place: Place) -> Response | None:
     """The response of the curve's own machine at a place, if Newton's method leads there."""
     equations = place.branch.family.at(place.value)
     result = newton(equations, place.response.unknowns, _NEWTON)
-    forces = float(np.linalg.norm(equations.rotor_force(result.x)))
-    balanced = result.residuals[-1] * equations.load <= ROUNDING * forces
-    return response_at(equations, result.x) if result.outcome.converged or balanced else None
+    # as near as the branch's own points come
+    return response_at(equations, result.x) if balanced(equations, result, ROUNDING) else None
