@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +37,10 @@ class JournalMotion:
     clearance: float
     harmonics: Harmonics
     coefficients: Array
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is sent to another process: what is known but for the samples, which are large."""
+        return {name: value for name, value in vars(self).items() if name != "_samples"}
 
     @property
     def cos(self) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -111,8 +111,7 @@ def compute(job: CurveJob, progress: Callable[[float], None]) -> Iterator[CurveR
     with np.errstate(all="ignore"):
         balance = HarmonicBalance(job.machine, Harmonics(job.harmonics))
         curve = response_curve(balance, job.lowest, job.highest, progress=progress)
-        for branch in curve.branches:
-            _measure(branch)
+        _measure(curve.branches)
         found = tuple(jump for direction in Direction for jump in jumps(curve, direction))
         result = CurveResult(job, curve, found, None, time.monotonic() - start)
     yield result
@@ -120,17 +119,14 @@ def compute(job: CurveJob, progress: Callable[[float], None]) -> Iterator[CurveR
         return
     with np.errstate(all="ignore"):
         detached = tuple(detached_branches(curve, job.lowest, job.highest, progress=progress))
-        for branch in detached:
-            _measure(branch)
+        _measure(detached)
     yield replace(result, detached=detached, seconds=time.monotonic() - start)
 
 
-def _measure(branch: CurveBranch) -> None:
-    """Compute the eccentricities of a branch here, where the time that takes delays nobody.
+def _measure(branches: Iterable[CurveBranch]) -> None:
+    """Compute the eccentricities of branches here, where the time that takes delays nobody.
 
-    They are cached and sent with it; the orbits that they are read off, 8 kB each, are not.
+    They are cached and sent with them.
     """
-    for solution in branch.solutions:
-        for motion in solution.journals.values():
-            vars(motion)["eccentricity_max"] = replace(motion).eccentricity_max
-    assert branch.worst_eccentricity.size
+    for branch in branches:
+        _ = branch.worst_eccentricity
