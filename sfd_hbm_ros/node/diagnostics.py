@@ -5,22 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from enum import IntEnum
 from typing import Any
 
 from sfd_hbm_ros.node.inputs import Drops, Feed
 from sfd_hbm_ros.node.prediction import Model, Prediction
+from sfd_hbm_ros.response.alarm_settings import Level
 
 RECENT = 5.0
 """For how long [s] a dropped input or a caught exception keeps its warning."""
-
-
-class Level(IntEnum):
-    """How a subject fares; the numbers are those of diagnostic_msgs/DiagnosticStatus."""
-
-    OK = 0
-    WARN = 1
-    ERROR = 2
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sfd_hbm_ros.node.diagnostics import Level, Status
+from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.response.advice import advice
 from sfd_hbm_ros.response.jump_alarm import JumpAlarm
 from sfd_hbm_ros.response.outlook import Outlook
@@ -54,7 +54,7 @@ def jump_status(
         "model_age_s": _number(model_age),
     }
     sentence = advice(alarm, outlook, eccentricity, now)
-    return Status("Jump", Level(alarm.level(now)), sentence, values)
+    return Status("Jump", alarm.level(now), sentence, values)
 
 
 def _number(value: float) -> str:

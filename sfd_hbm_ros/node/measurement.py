@@ -12,13 +12,14 @@ from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
 from sfd_hbm_ros.node import messages
-from sfd_hbm_ros.node.diagnostics import Level, Status
+from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.dropping import dropping
 from sfd_hbm_ros.node.inputs import Feed, InputError
 from sfd_hbm_ros.node.measured_messages import read_measured
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.prediction import Prediction
+from sfd_hbm_ros.response.alarm_settings import Level
 from sfd_hbm_ros.response.settling import Judgement, Settling
 from sfd_hbm_ros.response.tracked import Tracked
 

@@ -10,11 +10,12 @@ from dataclasses import replace
 
 from rclpy.lifecycle import LifecycleNode
 
-from sfd_hbm_ros.node.diagnostics import Level, Status
+from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.prediction import Model, Prediction
 from sfd_hbm_ros.node.watch import Watch
+from sfd_hbm_ros.response.alarm_settings import Level
 from sfd_hbm_ros.response.jump_alarm import JumpAlarm
 from sfd_hbm_ros.response.state import State, restore
 from sfd_hbm_ros.response.state_file import StateFileError, load_state, save_state

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sfd_hbm_ros.node.diagnostics import Level, Status
+from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.worker import Worker
+from sfd_hbm_ros.response.alarm_settings import Level
 
 
 def with_worker(model: Status, worker: Worker) -> Status:

@@ -11,7 +11,7 @@ from sfd_hbm_ros.machine.rules import Rule, flag, number
 
 
 class Level(IntEnum):
-    """How bad it is; the numbers are those of diagnostic_msgs/DiagnosticStatus."""
+    """How bad something is; the numbers are those of diagnostic_msgs/DiagnosticStatus."""
 
     OK = 0
     WARN = 1

@@ -15,8 +15,9 @@ from .process import PAPER_ROTOR
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.machine import override, read_machine
 from sfd_hbm_ros.node import monitor
-from sfd_hbm_ros.node.diagnostics import Level, Status
+from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.messages import diagnostics_message, speed_message
+from sfd_hbm_ros.response.alarm_settings import Level
 
 RPM = math.pi / 30.0  # rad/s
 LIMIT = 60.0  # s

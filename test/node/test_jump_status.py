@@ -4,9 +4,8 @@ import math
 
 import pytest
 
-from sfd_hbm_ros.node.diagnostics import Level
 from sfd_hbm_ros.node.jump_status import jump_status
-from sfd_hbm_ros.response.alarm_settings import AlarmSettings
+from sfd_hbm_ros.response.alarm_settings import AlarmSettings, Level
 from sfd_hbm_ros.response.jump_alarm import JumpAlarm
 from sfd_hbm_ros.response.jumps import Direction
 from sfd_hbm_ros.response.outlook import JumpAhead, Outlook, unknown_outlook

@@ -2,9 +2,10 @@
 
 import sys
 
-from sfd_hbm_ros.node.diagnostics import Level, Status
+from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.worker import Patience, Worker
 from sfd_hbm_ros.node.worker_status import with_worker
+from sfd_hbm_ros.response.alarm_settings import Level
 
 from .test_worker import NOWHERE, SLOW, until
 
