@@ -32,7 +32,7 @@ setup(
     entry_points={
         "console_scripts": [
             f"predictor = {package}.node.predictor:main",
-            f"simulator = {package}.node.simulator:main",
+            f"simulator = {package}.node.simulator.simulator:main",
             f"supervisor = {package}.node.supervisor:main",
             f"sfd_hbm = {package}.cli:main",
         ],

@@ -23,7 +23,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
-from sfd_hbm_ros.node.messages import read_stamp, speed_message
+from sfd_hbm_ros.node.messages.common import read_stamp, speed_message
 
 ROOT = Path(__file__).parents[1]
 NAMESPACE = f"/latency_{os.getpid()}"  # no other predictor is to answer

@@ -15,10 +15,10 @@ from rclpy.task import Future
 from sensor_msgs.msg import JointState, PointCloud2
 from std_msgs.msg import Header
 
-from sfd_hbm_ros.node.messages import read_stamp
-from sfd_hbm_ros.node.monitor_messages import read_eccentricities, read_warning
-from sfd_hbm_ros.node.run_point import DamperPoint, RunPoint
-from sfd_hbm_ros.node.run_warnings import WarningRecord
+from sfd_hbm_ros.node.messages.common import read_stamp
+from sfd_hbm_ros.node.messages.monitor import read_eccentricities, read_warning
+from sfd_hbm_ros.node.monitor.run_point import DamperPoint, RunPoint
+from sfd_hbm_ros.node.monitor.run_warnings import WarningRecord
 from sfd_hbm_ros.units import RPM
 
 _DEEP = 1000

@@ -20,18 +20,18 @@ from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, Solution
 from sfd_hbm_ros.machine import Machine, override_all
-from sfd_hbm_ros.response.acceleration import AccelerationEstimator
-from sfd_hbm_ros.response.alarm_settings import AlarmSettings, Level
-from sfd_hbm_ros.response.curve import NoSolutionError, ResponseCurve, response_curve
-from sfd_hbm_ros.response.integrator import Integrator
-from sfd_hbm_ros.response.journey import travel
-from sfd_hbm_ros.response.jump_alarm import JumpAlarm
-from sfd_hbm_ros.response.jump_map import JumpMap, jump_map
-from sfd_hbm_ros.response.jumps import solutions_at
-from sfd_hbm_ros.response.observed import observed_jumps
-from sfd_hbm_ros.response.place import Place, places_at
-from sfd_hbm_ros.response.ramp import Ramp
-from sfd_hbm_ros.response.transient import run
+from sfd_hbm_ros.response.curves.curve import NoSolutionError, ResponseCurve, response_curve
+from sfd_hbm_ros.response.curves.journey import travel
+from sfd_hbm_ros.response.curves.jumps import solutions_at
+from sfd_hbm_ros.response.curves.place import Place, places_at
+from sfd_hbm_ros.response.integration.integrator import Integrator
+from sfd_hbm_ros.response.integration.observed import observed_jumps
+from sfd_hbm_ros.response.integration.ramp import Ramp
+from sfd_hbm_ros.response.integration.transient import run
+from sfd_hbm_ros.response.warning.acceleration import AccelerationEstimator
+from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
+from sfd_hbm_ros.response.warning.jump_map import JumpMap, jump_map
+from sfd_hbm_ros.response.warning.settings import AlarmSettings, Level
 from sfd_hbm_ros.rotor import critical_speeds, hold_journals
 from test.hbm.machines import random_machine
 

@@ -11,7 +11,7 @@ from typing import NoReturn
 
 from sfd_hbm_ros.commands import modes, paper, simulate, solve, study, sweep
 from sfd_hbm_ros.machine import MachineError
-from sfd_hbm_ros.response.curve import NoSolutionError
+from sfd_hbm_ros.response.curves.curve import NoSolutionError
 from sfd_hbm_ros.study.results import IncompleteError
 
 VERBS = {

@@ -8,10 +8,10 @@ import numpy as np
 
 from benchmarks.peers.problem import PAPER, RPM, Row, median_seconds
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
-from sfd_hbm_ros.response.curve import response_curve
-from sfd_hbm_ros.response.integrator import Integrator
-from sfd_hbm_ros.response.ramp import Ramp
-from sfd_hbm_ros.response.transient import run
+from sfd_hbm_ros.response.curves.curve import response_curve
+from sfd_hbm_ros.response.integration.integrator import Integrator
+from sfd_hbm_ros.response.integration.ramp import Ramp
+from sfd_hbm_ros.response.integration.transient import run
 
 LOWEST, HIGHEST, SPEEDS = 2000.0 * RPM, 6000.0 * RPM, 200
 INTEGRATED = np.array([2500.0, 3300.0, 3900.0, 4500.0, 5500.0]) * RPM

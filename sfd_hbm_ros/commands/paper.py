@@ -14,7 +14,7 @@ from sfd_hbm_ros.report.paper.claims import JudgedClaim, judge
 from sfd_hbm_ros.report.paper.compute import compute
 from sfd_hbm_ros.report.paper.judging import Verdict
 from sfd_hbm_ros.report.paper.study import Study
-from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.curves.curve import ResponseCurve
 
 _WIDTH = 99
 

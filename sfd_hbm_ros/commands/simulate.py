@@ -16,8 +16,8 @@ from sfd_hbm_ros.commands.arguments import (
 from sfd_hbm_ros.commands.progress import Progress, speed_bar
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.report.transient_table import write_transient
-from sfd_hbm_ros.response.observed import ObservedJump, observed_jumps
-from sfd_hbm_ros.response.transient import Transient, simulate
+from sfd_hbm_ros.response.integration.observed import ObservedJump, observed_jumps
+from sfd_hbm_ros.response.integration.transient import Transient, simulate
 from sfd_hbm_ros.units import RPM
 
 

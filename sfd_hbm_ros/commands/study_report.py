@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from sfd_hbm_ros.response.jumps import Direction
+from sfd_hbm_ros.response.curves.jumps import Direction
 from sfd_hbm_ros.study.results import Results
 from sfd_hbm_ros.units import RPM
 

@@ -16,14 +16,14 @@ from sfd_hbm_ros.commands.ranges import range_from, varied_from
 from sfd_hbm_ros.commands.sweep_report import data_of, text_of
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.hbm.selection import SelectedBalance
-from sfd_hbm_ros.response.curve import (
+from sfd_hbm_ros.response.curves.curve import (
     ResponseCurve,
     parameter_curve,
     response_curve,
     selected_curve,
 )
-from sfd_hbm_ros.response.detached import detached_branches
-from sfd_hbm_ros.response.summary import Summary
+from sfd_hbm_ros.response.curves.detached import detached_branches
+from sfd_hbm_ros.response.curves.summary import Summary
 from sfd_hbm_ros.units import RPM
 
 

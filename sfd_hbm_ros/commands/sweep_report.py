@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.points import Stop
-from sfd_hbm_ros.response.judged import CurveBranch
-from sfd_hbm_ros.response.summary import Mark, Summary
+from sfd_hbm_ros.response.curves.judged import CurveBranch
+from sfd_hbm_ros.response.curves.summary import Mark, Summary
 from sfd_hbm_ros.units import RPM
 
 

@@ -13,15 +13,15 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import Trigger
 
-from sfd_hbm_ros.node.curve_job import CurveJob, CurveResult
-from sfd_hbm_ros.node.curve_messages import response_curve_message
 from sfd_hbm_ros.node.diagnostics import Status
-from sfd_hbm_ros.node.likeness import alike
+from sfd_hbm_ros.node.messages.curve import response_curve_message
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
-from sfd_hbm_ros.node.renewal import Renewal
-from sfd_hbm_ros.node.worker import Patience, Worker
-from sfd_hbm_ros.response.jump_map import JumpMap, jump_map
+from sfd_hbm_ros.node.worker.curve_job import CurveJob, CurveResult
+from sfd_hbm_ros.node.worker.likeness import alike
+from sfd_hbm_ros.node.worker.renewal import Renewal
+from sfd_hbm_ros.node.worker.worker import Patience, Worker
+from sfd_hbm_ros.response.warning.jump_map import JumpMap, jump_map
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """Reliable, and the last message is there for whoever comes later."""

@@ -9,7 +9,7 @@ from typing import Any
 
 from sfd_hbm_ros.node.inputs import Drops, Feed
 from sfd_hbm_ros.node.prediction import Model, Prediction
-from sfd_hbm_ros.response.alarm_settings import Level
+from sfd_hbm_ros.response.warning.settings import Level
 
 RECENT = 5.0
 """For how long [s] a dropped input or a caught exception keeps its warning."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from sfd_hbm_ros.node.diagnostics import Status
-from sfd_hbm_ros.response.advice import advice
-from sfd_hbm_ros.response.jump_alarm import JumpAlarm
-from sfd_hbm_ros.response.outlook import Outlook
-from sfd_hbm_ros.response.tracked import BranchName
+from sfd_hbm_ros.response.tracking.tracked import BranchName
+from sfd_hbm_ros.response.warning.advice import advice
+from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
+from sfd_hbm_ros.response.warning.outlook import Outlook
 from sfd_hbm_ros.units import RPM
 
 

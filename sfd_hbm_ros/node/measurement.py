@@ -11,17 +11,17 @@ from rclpy.lifecycle import LifecycleNode
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
-from sfd_hbm_ros.node import messages
 from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.dropping import dropping
 from sfd_hbm_ros.node.inputs import Feed, InputError
-from sfd_hbm_ros.node.measured_messages import read_measured
+from sfd_hbm_ros.node.messages import common as messages
+from sfd_hbm_ros.node.messages.measured import read_measured
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.prediction import Prediction
-from sfd_hbm_ros.response.alarm_settings import Level
-from sfd_hbm_ros.response.settling import Judgement, Settling
-from sfd_hbm_ros.response.tracked import Tracked
+from sfd_hbm_ros.response.tracking.settling import Judgement, Settling
+from sfd_hbm_ros.response.tracking.tracked import Tracked
+from sfd_hbm_ros.response.warning.settings import Level
 
 _QUEUE = 10
 _KEPT = 100  # predictions, among which that of a measured orbit's time is looked for

@@ -15,10 +15,10 @@ from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.prediction import Model, Prediction
 from sfd_hbm_ros.node.watch import Watch
-from sfd_hbm_ros.response.alarm_settings import Level
-from sfd_hbm_ros.response.jump_alarm import JumpAlarm
-from sfd_hbm_ros.response.state import State, restore
-from sfd_hbm_ros.response.state_file import StateFileError, load_state, save_state
+from sfd_hbm_ros.response.tracking.state import State, restore
+from sfd_hbm_ros.response.tracking.state_file import StateFileError, load_state, save_state
+from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
+from sfd_hbm_ros.response.warning.settings import Level
 
 _PERIOD = 1.0  # s between two savings without a change worth more
 

@@ -10,9 +10,9 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import Temperature
 
 from sfd_hbm_ros.machine import Damper
-from sfd_hbm_ros.node import messages
 from sfd_hbm_ros.node.dropping import dropping
 from sfd_hbm_ros.node.inputs import Feed, InputError
+from sfd_hbm_ros.node.messages import common as messages
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
 

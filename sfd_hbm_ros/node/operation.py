@@ -14,12 +14,12 @@ from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
 from sfd_hbm_ros.machine import Machine
-from sfd_hbm_ros.node import messages
 from sfd_hbm_ros.node.dropping import dropping
 from sfd_hbm_ros.node.inputs import Feed, InputError, Pending
+from sfd_hbm_ros.node.messages import common as messages
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.prediction import Model, Prediction
-from sfd_hbm_ros.response.acceleration import AccelerationEstimator
+from sfd_hbm_ros.response.warning.acceleration import AccelerationEstimator
 
 _QUEUE = 10
 

@@ -6,7 +6,7 @@ from geometry_msgs.msg import PolygonStamped
 from rclpy.lifecycle import LifecycleNode
 from rclpy.time import Time
 
-from sfd_hbm_ros.node.curve_messages import orbit_message
+from sfd_hbm_ros.node.messages.curve import orbit_message
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.prediction import Prediction
 

@@ -12,7 +12,7 @@ from sfd_hbm_ros.machine import Machine, MachineError, override_all
 from sfd_hbm_ros.machine.errors import show_key, unknown
 from sfd_hbm_ros.machine.oil import Oil
 from sfd_hbm_ros.node.schema import SCHEMA, ParameterError, Spec, machine_schema
-from sfd_hbm_ros.response.alarm_settings import AlarmSettings
+from sfd_hbm_ros.response.warning.settings import AlarmSettings
 
 _SECTIONS = ("dampers", "unbalance", "gravity")
 

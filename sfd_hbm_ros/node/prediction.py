@@ -10,8 +10,8 @@ import numpy as np
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion
 from sfd_hbm_ros.machine import Load, Machine
-from sfd_hbm_ros.response.tracked import Tracked
-from sfd_hbm_ros.response.tracker import Tracker
+from sfd_hbm_ros.response.tracking.tracked import Tracked
+from sfd_hbm_ros.response.tracking.tracker import Tracker
 
 AT_REST = "the rotor is at rest: there is nothing to predict"
 

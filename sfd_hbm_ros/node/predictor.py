@@ -26,7 +26,7 @@ from sfd_hbm_ros.node.schema import ParameterError
 from sfd_hbm_ros.node.self_test import SelfTestService
 from sfd_hbm_ros.node.watch import Watch
 from sfd_hbm_ros.node.what_if import WhatIf
-from sfd_hbm_ros.node.worker_status import with_worker
+from sfd_hbm_ros.node.worker.status import with_worker
 
 _SUCCESS = TransitionCallbackReturn.SUCCESS
 _LOG_PAUSE = 5.0  # s between two log messages about exceptions

@@ -12,8 +12,8 @@ from rclpy.node import Node
 from rclpy.qos import LivelinessPolicy, QoSProfile
 from std_msgs.msg import Header
 
-from sfd_hbm_ros.node import messages
 from sfd_hbm_ros.node.diagnostics import Levels, Status
+from sfd_hbm_ros.node.messages import common as messages
 
 _QUEUE = 10
 _REPORT = 1.0  # s between two reports, REP 107

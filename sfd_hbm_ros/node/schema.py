@@ -11,7 +11,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from sfd_hbm_ros.machine import Damper, Machine, Unbalance
 from sfd_hbm_ros.machine.errors import show
 from sfd_hbm_ros.machine.rules import Rule
-from sfd_hbm_ros.response.alarm_settings import AlarmSettings
+from sfd_hbm_ros.response.warning.settings import AlarmSettings
 
 Value = bool | int | float | str
 

@@ -14,10 +14,10 @@ from rclpy.task import Future
 from sfd_hbm_ros.machine import read_machine
 from sfd_hbm_ros.machine.shipped import shipped
 from sfd_hbm_ros.node.diagnostics import Status
-from sfd_hbm_ros.node.messages import status_message
+from sfd_hbm_ros.node.messages.common import status_message
 from sfd_hbm_ros.node.slices import PERIOD, advance
-from sfd_hbm_ros.response.alarm_settings import Level
 from sfd_hbm_ros.response.self_test import Finding, self_test
+from sfd_hbm_ros.response.warning.settings import Level
 
 _ROTOR = "paper_rotor.yaml"
 

@@ -14,16 +14,16 @@ from rclpy.clock_type import ClockType
 from rclpy.lifecycle import LifecycleNode
 from std_srvs.srv import SetBool, Trigger
 
-from sfd_hbm_ros.node import messages
 from sfd_hbm_ros.node.curves import LATCHED, Curves
 from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.jump_status import jump_status
+from sfd_hbm_ros.node.messages import common as messages
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.prediction import Prediction
-from sfd_hbm_ros.response.alarm_settings import AlarmSettings
-from sfd_hbm_ros.response.jump_alarm import Answer, JumpAlarm
-from sfd_hbm_ros.response.outlook import Outlook, unknown_outlook
-from sfd_hbm_ros.response.tracked import BranchName, Tracked
+from sfd_hbm_ros.response.tracking.tracked import BranchName, Tracked
+from sfd_hbm_ros.response.warning.jump_alarm import Answer, JumpAlarm
+from sfd_hbm_ros.response.warning.outlook import Outlook, unknown_outlook
+from sfd_hbm_ros.response.warning.settings import AlarmSettings
 
 _LOOK = 0.1  # s between two looks at the alarm while nothing is predicted
 _REPEAT = 1.0  # s after which the warning is published without a change

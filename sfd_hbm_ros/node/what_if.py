@@ -12,15 +12,15 @@ from rclpy.lifecycle import LifecycleNode
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
-from sfd_hbm_ros.node import messages
 from sfd_hbm_ros.node.curves import Curves
 from sfd_hbm_ros.node.dropping import dropping
 from sfd_hbm_ros.node.inputs import Drops, InputError, Order
+from sfd_hbm_ros.node.messages import common as messages
+from sfd_hbm_ros.node.messages.what_if import Answer, read_what_if, what_if_message
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.slices import PERIOD, advance
-from sfd_hbm_ros.node.what_if_messages import Answer, read_what_if, what_if_message
-from sfd_hbm_ros.response.what_if import what_if
+from sfd_hbm_ros.response.tracking.what_if import what_if
 
 MOST_WAITING = 10
 """Questions that may wait; further ones are refused."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from sfd_hbm_ros.hbm.family import ParameterFamily
 from sfd_hbm_ros.report.units import grouped
-from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.units import RPM
 
 

@@ -11,8 +11,8 @@ from sfd_hbm_ros.report.stretches import draw_branch, unstable_key
 from sfd_hbm_ros.report.style import INK, label_abscissa, legend
 from sfd_hbm_ros.report.units import MICROMETRE
 from sfd_hbm_ros.report.vibration import FIRST, vibration
-from sfd_hbm_ros.response.curve import ResponseCurve
-from sfd_hbm_ros.response.judged import CurveBranch
+from sfd_hbm_ros.response.curves.curve import ResponseCurve
+from sfd_hbm_ros.response.curves.judged import CurveBranch
 from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]

@@ -14,8 +14,8 @@ from sfd_hbm_ros.report.stretches import stretches
 from sfd_hbm_ros.report.style import INK, LINE, QUIET
 from sfd_hbm_ros.report.units import MICROMETRE, grouped
 from sfd_hbm_ros.report.vibration import vibration
-from sfd_hbm_ros.response.curve import ResponseCurve
-from sfd_hbm_ros.response.judged import CurveBranch
+from sfd_hbm_ros.response.curves.curve import ResponseCurve
+from sfd_hbm_ros.response.curves.judged import CurveBranch
 from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]

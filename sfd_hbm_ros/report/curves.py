@@ -19,9 +19,9 @@ from sfd_hbm_ros.report.style import (
     legend,
     shades,
 )
-from sfd_hbm_ros.response.curve import ResponseCurve
-from sfd_hbm_ros.response.judged import CurveBranch
-from sfd_hbm_ros.response.jumps import Jump
+from sfd_hbm_ros.response.curves.curve import ResponseCurve
+from sfd_hbm_ros.response.curves.judged import CurveBranch
+from sfd_hbm_ros.response.curves.jumps import Jump
 
 _MARKERS = {
     Instability.FOLD: "o",

@@ -9,7 +9,7 @@ from matplotlib.path import Path
 
 from sfd_hbm_ros.report.abscissa import Abscissa
 from sfd_hbm_ros.report.style import LINE
-from sfd_hbm_ros.response.jumps import Direction, Jump
+from sfd_hbm_ros.response.curves.jumps import Direction, Jump
 
 COLOURS = {Direction.RUN_UP: "#c4460a", Direction.COAST_DOWN: "#0f8a6a"}
 _SPEED_NAMES = {Direction.RUN_UP: "run-up jump", Direction.COAST_DOWN: "coast-down jump"}

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sfd_hbm_ros.report.jumps import COLOURS
 from sfd_hbm_ros.report.style import LINE, QUIET, label_abscissa, legend
 from sfd_hbm_ros.report.units import grouped
-from sfd_hbm_ros.response.jumps import Direction
+from sfd_hbm_ros.response.curves.jumps import Direction
 from sfd_hbm_ros.study.results import Results
 from sfd_hbm_ros.units import RPM
 

@@ -12,7 +12,7 @@ from scipy.interpolate import PchipInterpolator
 
 from sfd_hbm_ros.hbm import Instability
 from sfd_hbm_ros.report.style import DASHES, LINE
-from sfd_hbm_ros.response.judged import CurveBranch
+from sfd_hbm_ros.response.curves.judged import CurveBranch
 
 Array = NDArray[np.float64]
 

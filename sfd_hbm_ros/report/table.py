@@ -7,7 +7,7 @@ from pathlib import Path
 from sfd_hbm_ros.hbm import Harmonics, Solution
 from sfd_hbm_ros.report.abscissa import Abscissa
 from sfd_hbm_ros.report.csv_file import write_csv
-from sfd_hbm_ros.response.curve import ResponseCurve
+from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.responses import Response
 from sfd_hbm_ros.units import RPM
 

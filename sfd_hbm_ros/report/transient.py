@@ -6,10 +6,10 @@ from matplotlib.axes import Axes
 
 from sfd_hbm_ros.report.style import INK, LINE, QUIET, SECOND, label_abscissa, legend
 from sfd_hbm_ros.report.units import grouped
-from sfd_hbm_ros.response.jumps import Direction
-from sfd_hbm_ros.response.observed import ObservedJump
-from sfd_hbm_ros.response.ramp import Ramp
-from sfd_hbm_ros.response.transient import Transient
+from sfd_hbm_ros.response.curves.jumps import Direction
+from sfd_hbm_ros.response.integration.observed import ObservedJump
+from sfd_hbm_ros.response.integration.ramp import Ramp
+from sfd_hbm_ros.response.integration.transient import Transient
 from sfd_hbm_ros.units import RPM
 
 _TITLES = {

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from sfd_hbm_ros.report.csv_file import write_csv
-from sfd_hbm_ros.response.transient import Transient
+from sfd_hbm_ros.response.integration.transient import Transient
 from sfd_hbm_ros.units import RPM
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Solution, Stability, stability
 from sfd_hbm_ros.hbm.family import FamilyMember
+from sfd_hbm_ros.hbm.newton import NewtonResult
 from sfd_hbm_ros.hbm.quasi_periodic import QuasiPeriodicEquations
 from sfd_hbm_ros.hbm.quasi_periodic_response import (
     QuasiPeriodicResponse,
@@ -24,6 +25,8 @@ Response: TypeAlias = Solution | QuasiPeriodicResponse
 SAME = 1e-5
 """Distance, of the clearance, within which two responses are one."""
 
+_ROUNDING = 1e-12  # of the rotor's forces, which near its undamped poles exceed the load by far
+
 
 def response_at(equations: FamilyMember, x: Array) -> Response:
     """The response of unknowns (n,) that solve equations of either kind."""
@@ -31,6 +34,14 @@ def response_at(equations: FamilyMember, x: Array) -> Response:
     if isinstance(equations, QuasiPeriodicEquations):
         return quasi_periodic_response(balance, equations.harmonics, speed, x)
     return solution_at(balance, speed, x)
+
+
+def balanced(equations: FamilyMember, result: NewtonResult, rounding: float = _ROUNDING) -> bool:
+    """Whether Newton's method converged, or left only a part of the rotor's forces: rounding."""
+    if result.outcome.converged:
+        return True
+    forces = float(np.linalg.norm(equations.rotor_force(result.x)))
+    return result.residuals[-1] * equations.load <= rounding * forces
 
 
 def stability_of(balance: HarmonicBalance, response: Response) -> Stability:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.response.jumps import Direction
+from sfd_hbm_ros.response.curves.jumps import Direction
 from sfd_hbm_ros.study.design import Design
 from sfd_hbm_ros.study.task import Outcome
 

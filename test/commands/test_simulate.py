@@ -13,7 +13,7 @@ import pytest
 from sfd_hbm_ros.cli import main
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.machine import read_machine
-from sfd_hbm_ros.response.transient import simulate
+from sfd_hbm_ros.response.integration.transient import simulate
 
 ROOT = Path(__file__).parents[2]
 PAPER = str(ROOT / "config" / "paper_rotor.yaml")

@@ -9,9 +9,9 @@ import pytest
 from sfd_hbm_ros.cli import main
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.machine import override, override_all, read_machine
-from sfd_hbm_ros.response.curve import response_curve
-from sfd_hbm_ros.response.jumps import Direction
-from sfd_hbm_ros.response.summary import Summary
+from sfd_hbm_ros.response.curves.curve import response_curve
+from sfd_hbm_ros.response.curves.jumps import Direction
+from sfd_hbm_ros.response.curves.summary import Summary
 
 from .studies import CURVE, GRID, PAPER, SPRING, UNBALANCE, VARIANTS, rows, timeless
 

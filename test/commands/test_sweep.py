@@ -12,7 +12,7 @@ import pytest
 from sfd_hbm_ros.cli import main
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.machine import override, read_machine
-from sfd_hbm_ros.response.curve import response_curve
+from sfd_hbm_ros.response.curves.curve import response_curve
 
 PAPER = str(Path(__file__).parents[2] / "config" / "paper_rotor.yaml")
 RPM = np.pi / 30.0

@@ -12,8 +12,8 @@ from sfd_hbm_ros.hbm.newton import newton
 from sfd_hbm_ros.hbm.selection import SelectedBalance
 from sfd_hbm_ros.hbm.solve import solution_at
 from sfd_hbm_ros.hbm.switching import absent_coefficients, null_vector, over, switch
-from sfd_hbm_ros.response.integrator import Integrator
-from sfd_hbm_ros.response.ramp import Ramp
+from sfd_hbm_ros.response.integration.integrator import Integrator
+from sfd_hbm_ros.response.integration.ramp import Ramp
 
 from .machines import misaligned_rotor
 

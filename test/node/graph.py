@@ -28,7 +28,7 @@ from sensor_msgs.msg import JointState, PointCloud2  # noqa: E402
 from std_msgs.msg import Header  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 
-from sfd_hbm_ros.node.messages import speed_message  # noqa: E402
+from sfd_hbm_ros.node.messages.common import speed_message  # noqa: E402
 
 LIMIT = 60.0  # s; joining a node alone takes up to 3 s on an idle computer
 Numbers = dict[str, float]

@@ -14,10 +14,10 @@ from .process import PAPER_ROTOR
 # isort: split
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.machine import override, read_machine
-from sfd_hbm_ros.node import monitor
 from sfd_hbm_ros.node.diagnostics import Status
-from sfd_hbm_ros.node.messages import diagnostics_message, speed_message
-from sfd_hbm_ros.response.alarm_settings import Level
+from sfd_hbm_ros.node.messages.common import diagnostics_message, speed_message
+from sfd_hbm_ros.node.monitor import monitor
+from sfd_hbm_ros.response.warning.settings import Level
 
 RPM = math.pi / 30.0  # rad/s
 LIMIT = 60.0  # s

@@ -5,11 +5,11 @@ import math
 import pytest
 
 from sfd_hbm_ros.node.jump_status import jump_status
-from sfd_hbm_ros.response.alarm_settings import AlarmSettings, Level
-from sfd_hbm_ros.response.jump_alarm import JumpAlarm
-from sfd_hbm_ros.response.jumps import Direction
-from sfd_hbm_ros.response.outlook import JumpAhead, Outlook, unknown_outlook
-from sfd_hbm_ros.response.tracked import BranchName
+from sfd_hbm_ros.response.curves.jumps import Direction
+from sfd_hbm_ros.response.tracking.tracked import BranchName
+from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
+from sfd_hbm_ros.response.warning.outlook import JumpAhead, Outlook, unknown_outlook
+from sfd_hbm_ros.response.warning.settings import AlarmSettings, Level
 
 RPM = math.pi / 30.0
 SETTINGS = AlarmSettings(

@@ -8,8 +8,8 @@ from .graph import JointState, Numbers, Remote, numbers  # first, as it skips th
 
 # isort: split
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, Solution, solve
-from sfd_hbm_ros.response.measured import named_harmonics
-from sfd_hbm_ros.response.settling import CONFIRMATIONS
+from sfd_hbm_ros.response.tracking.measured import named_harmonics
+from sfd_hbm_ros.response.tracking.settling import CONFIRMATIONS
 
 from .bistable import BOTH, LOWER_ONLY, MACHINE, UPPER_ONLY, Topics, begin, orbits, settle_at
 

@@ -11,8 +11,8 @@ import pytest
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.machine import override, read_machine
-from sfd_hbm_ros.response.curve import response_curve
-from sfd_hbm_ros.response.place import places_at
+from sfd_hbm_ros.response.curves.curve import response_curve
+from sfd_hbm_ros.response.curves.place import places_at
 
 from .graph import Graph, Remote, strings
 from .process import PAPER_ROTOR, NodeProcess

@@ -20,8 +20,8 @@ from geometry_msgs.msg import PolygonStamped
 from std_srvs.srv import SetBool
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
-from sfd_hbm_ros.node.curve_messages import CURVE_POINT
-from sfd_hbm_ros.response.curve import response_curve
+from sfd_hbm_ros.node.messages.curve import CURVE_POINT
+from sfd_hbm_ros.response.curves.curve import response_curve
 
 from .process import PAPER_ROTOR
 

@@ -9,8 +9,8 @@ from sfd_hbm_ros.hbm.family import SpeedFamily
 from sfd_hbm_ros.hbm.options import ContinuationOptions
 from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.machine import override_all
-from sfd_hbm_ros.response.curve import ResponseCurve, parameter_curve, response_curve
-from sfd_hbm_ros.response.judged import CurveBranch
+from sfd_hbm_ros.response.curves.curve import ResponseCurve, parameter_curve, response_curve
+from sfd_hbm_ros.response.curves.judged import CurveBranch
 
 from ..hbm.machines import PAPER
 

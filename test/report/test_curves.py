@@ -7,7 +7,7 @@ from matplotlib.colors import to_rgb
 from sfd_hbm_ros.hbm import Instability
 from sfd_hbm_ros.report.curves import draw_response, draw_study
 from sfd_hbm_ros.report.style import new_figure
-from sfd_hbm_ros.response.jumps import Direction, Jump, jumps
+from sfd_hbm_ros.response.curves.jumps import Direction, Jump, jumps
 
 from . import reading
 from .curves import DAMPER, RPM, UNBALANCE, jumping, made, motion, sagging, unbalanced

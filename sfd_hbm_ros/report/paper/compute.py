@@ -9,8 +9,8 @@ from dataclasses import replace
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.hbm.options import ContinuationOptions
 from sfd_hbm_ros.report.paper.cases import Case, Cases
-from sfd_hbm_ros.response.curve import ResponseCurve, response_curve
-from sfd_hbm_ros.response.detached import detached_branches
+from sfd_hbm_ros.response.curves.curve import ResponseCurve, response_curve
+from sfd_hbm_ros.response.curves.detached import detached_branches
 from sfd_hbm_ros.units import RPM
 
 _SPEEDS = 2  # at which detached branches are looked for, besides those that suggest themselves

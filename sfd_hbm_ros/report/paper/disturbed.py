@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Solution
-from sfd_hbm_ros.response.integrator import Integrator
-from sfd_hbm_ros.response.ramp import Ramp
-from sfd_hbm_ros.response.transient import Transient, run
+from sfd_hbm_ros.response.integration.integrator import Integrator
+from sfd_hbm_ros.response.integration.ramp import Ramp
+from sfd_hbm_ros.response.integration.transient import Transient, run
 
 
 def third_harmonic(

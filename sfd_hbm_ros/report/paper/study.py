@@ -9,10 +9,10 @@ from scipy.optimize import minimize_scalar
 
 from sfd_hbm_ros.hbm import JournalMotion, Solution, solve
 from sfd_hbm_ros.report.paper.cases import Numbers, Range
-from sfd_hbm_ros.response.curve import ResponseCurve
-from sfd_hbm_ros.response.judged import CurveBranch
-from sfd_hbm_ros.response.jumps import solutions_at
-from sfd_hbm_ros.response.summary import Summary
+from sfd_hbm_ros.response.curves.curve import ResponseCurve
+from sfd_hbm_ros.response.curves.judged import CurveBranch
+from sfd_hbm_ros.response.curves.jumps import solutions_at
+from sfd_hbm_ros.response.curves.summary import Summary
 from sfd_hbm_ros.units import RPM
 
 _ACCURACY = 0.02 * RPM  # to which the speed of a peak is found [rad/s]

@@ -1,0 +1,1 @@
+"""What the demo prints of a run, from what the predictor publishes."""

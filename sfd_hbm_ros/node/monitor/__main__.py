@@ -1,0 +1,7 @@
+"""Start the monitor."""
+
+import sys
+
+from sfd_hbm_ros.node.monitor.monitor import main
+
+sys.exit(main())

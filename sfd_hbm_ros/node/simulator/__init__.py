@@ -1,0 +1,1 @@
+"""A machine that is not there: its speed and its measured orbits."""

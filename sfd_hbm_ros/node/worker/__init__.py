@@ -1,0 +1,1 @@
+"""The process that computes response curves while the predictor answers."""

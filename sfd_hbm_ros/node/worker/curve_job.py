@@ -1,0 +1,132 @@
+"""What the worker process computes: the response curve of a machine. Without ROS."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
+from sfd_hbm_ros.machine import Machine
+from sfd_hbm_ros.response.curves.curve import ResponseCurve, response_curve
+from sfd_hbm_ros.response.curves.detached import detached_branches
+from sfd_hbm_ros.response.curves.judged import CurveBranch
+from sfd_hbm_ros.response.curves.jumps import Direction, Jump, jumps
+
+
+@dataclass(frozen=True)
+class CurveJob:
+    """A response curve that is asked for.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine with the loads that act on it.
+    harmonics : int
+        The highest harmonic to balance.
+    lowest, highest : float
+        Range of the speed [rad/s].
+    detached : bool
+        Whether to look for detached branches, too.
+    """
+
+    machine: Machine
+    harmonics: int
+    lowest: float
+    highest: float
+    detached: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class CurveResult:
+    """A response curve with what is read off it.
+
+    Attributes
+    ----------
+    job : CurveJob
+        What was asked for.
+    curve : ResponseCurve
+        The curve, with the eccentricities of all points computed.
+    jumps : tuple of Jump
+        Jumps of a journey up through the range, then of one down.
+    detached : tuple of CurveBranch or None
+        Detached branches; None where they were not asked for, or are still being looked for.
+    seconds : float
+        Time it took [s].
+    """
+
+    job: CurveJob
+    curve: ResponseCurve
+    jumps: tuple[Jump, ...]
+    detached: tuple[CurveBranch, ...] | None
+    seconds: float
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing is to follow."""
+        return self.detached is not None or not self.job.detached
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why there is no result.
+
+    Attributes
+    ----------
+    reason : str
+        The reason in words.
+    final : bool
+        Whether another attempt would end the same way.
+    """
+
+    reason: str
+    final: bool
+
+
+def compute(job: CurveJob, progress: Callable[[float], None]) -> Iterator[CurveResult]:
+    """Compute a response curve.
+
+    Parameters
+    ----------
+    job : CurveJob
+        What is asked for.
+    progress : callable
+        Called with the speed [rad/s] of every new point.
+
+    Yields
+    ------
+    CurveResult
+        The curve as soon as it is whole, and once more with its detached branches if they are
+        asked for: to look for them takes several times longer.
+
+    Raises
+    ------
+    MachineError, NoSolutionError
+        If the machine cannot be balanced, or has no solution at an end of the range.
+    """
+    start = time.monotonic()
+    # Where numbers overflow there is no solution: that is said, not warned about.
+    with np.errstate(all="ignore"):
+        balance = HarmonicBalance(job.machine, Harmonics(job.harmonics))
+        curve = response_curve(balance, job.lowest, job.highest, progress=progress)
+        _measure(curve.branches)
+        found = tuple(jump for direction in Direction for jump in jumps(curve, direction))
+        result = CurveResult(job, curve, found, None, time.monotonic() - start)
+    yield result
+    if not job.detached:
+        return
+    with np.errstate(all="ignore"):
+        detached = tuple(detached_branches(curve, job.lowest, job.highest, progress=progress))
+        _measure(detached)
+    yield replace(result, detached=detached, seconds=time.monotonic() - start)
+
+
+def _measure(branches: Iterable[CurveBranch]) -> None:
+    """Compute the eccentricities of branches here, where the time that takes delays nobody.
+
+    They are cached and sent with them.
+    """
+    for branch in branches:
+        _ = branch.worst_eccentricity

@@ -1,0 +1,1 @@
+"""Response curves: their branches, the jumps on them and a walk along them."""

@@ -1,0 +1,88 @@
+"""The jumps that a machine makes as a parameter rises or falls through a response curve."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+from sfd_hbm_ros.hbm import NewtonOptions
+from sfd_hbm_ros.hbm.continuation import ROUNDING
+from sfd_hbm_ros.hbm.newton import newton
+from sfd_hbm_ros.response.curves.curve import ResponseCurve
+from sfd_hbm_ros.response.curves.journey import Leg, first_place, legs
+from sfd_hbm_ros.response.curves.judged import CurveBranch
+from sfd_hbm_ros.response.curves.place import Place, places_at
+from sfd_hbm_ros.response.responses import Response, balanced, response_at
+
+_NEWTON = NewtonOptions(iterations=12)  # between neighbouring points the start is near
+
+
+class Direction(StrEnum):
+    """Which way the parameter goes: for a speed, a run-up or a coast-down."""
+
+    RUN_UP = "run_up"
+    COAST_DOWN = "coast_down"
+
+    @property
+    def end(self) -> float:
+        """The value that a journey without an end goes to."""
+        return math.inf if self is Direction.RUN_UP else -math.inf
+
+
+@dataclass(frozen=True, eq=False)
+class Jump:
+    """One jump.
+
+    Attributes
+    ----------
+    direction : Direction
+        Which way the parameter went.
+    value : float
+        The parameter: for a speed [rad/s].
+    before, after : Solution or QuasiPeriodicResponse
+        The last response on the branch that is left, and the one on which the machine lands.
+    """
+
+    direction: Direction
+    value: float
+    before: Response
+    after: Response
+
+
+def leaps(curve: ResponseCurve, direction: Direction) -> list[Leg]:
+    """Legs that end with a jump, of the journey through the whole range in one direction."""
+    start = first_place(curve.branches, direction is Direction.RUN_UP)
+    return [leg for leg in legs(curve, start, direction.end) if leg.landing is not None]
+
+
+def jumps(curve: ResponseCurve, direction: Direction) -> list[Jump]:
+    """Jumps on the way through the whole range in one direction, in the order they happen.
+
+    The way is that of `journey.travel`; its responses are converged.
+    """
+    return [
+        Jump(direction, end.value, end.nearest, response_on(landing) or landing.nearest)
+        for end, _, landing in leaps(curve, direction)
+        if landing is not None
+    ]
+
+
+def solutions_at(branch: CurveBranch, value: float) -> Iterator[tuple[int, Response]]:
+    """Converged responses of a branch at a value of the parameter.
+
+    Yields
+    ------
+    The index of the point before each in the order of the arc, and the response.
+    """
+    for place in places_at([branch], value):
+        response = response_on(place)
+        if response is not None:
+            yield place.index, response
+
+
+def response_on(place: Place) -> Response | None:
+    """The response of the curve's own machine at a place, if Newton's method leads there."""
+    equations = place.branch.family.at(place.value)
+    result = newton(equations, place.response.unknowns, _NEWTON)
+    # as near as the branch's own points come
+    return response_at(equations, result.x) if balanced(equations, result, ROUNDING) else None

@@ -1,0 +1,1 @@
+"""Time integration of a machine: run-ups and coast-downs."""

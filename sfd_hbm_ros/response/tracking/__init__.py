@@ -1,0 +1,1 @@
+"""The operating point of a machine, followed with its history."""

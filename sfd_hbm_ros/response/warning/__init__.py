@@ -1,0 +1,1 @@
+"""What lies ahead of the operating point, and the alarm of it."""

@@ -1,0 +1,105 @@
+"""Messages of response curves and orbits, read as a program in another language would."""
+
+import struct
+from functools import cache
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy")
+
+from geometry_msgs.msg import PolygonStamped
+from rclpy.serialization import deserialize_message, serialize_message
+from sensor_msgs.msg import PointCloud2, PointField
+
+from sfd_hbm_ros.hbm import Harmonics, JournalMotion
+from sfd_hbm_ros.node.messages.curve import orbit_message, response_curve_message
+from sfd_hbm_ros.node.worker.curve_job import CurveJob, CurveResult, compute
+
+from ...hbm.machines import random_machine
+from ..graph import Time
+
+FORMATS = {
+    PointField.FLOAT64: "d",
+    PointField.UINT32: "I",
+    PointField.UINT16: "H",
+    PointField.UINT8: "B",
+}
+STAMP = Time(nanoseconds=12_000_000_345)
+
+
+@cache
+def result() -> CurveResult:
+    [result] = compute(CurveJob(random_machine(2, elements=4), 1, 100.0, 600.0), lambda _: None)
+    return result
+
+
+def sent(message):
+    return deserialize_message(serialize_message(message), type(message))
+
+
+def read(cloud: PointCloud2) -> list[dict[str, float]]:
+    """All points, by nothing but what the message says of its layout."""
+    assert (cloud.height, cloud.row_step) == (1, cloud.width * cloud.point_step)
+    assert len(cloud.data) == cloud.row_step
+    order = ">" if cloud.is_bigendian else "<"
+    data = bytes(cloud.data)
+    return [
+        {
+            field.name: struct.unpack_from(
+                order + FORMATS[field.datatype], data, i * cloud.point_step + field.offset
+            )[0]
+            for field in cloud.fields
+        }
+        for i in range(cloud.width)
+    ]
+
+
+def test_every_point_of_a_curve_arrives():
+    branches = result().curve.branches
+    cloud = sent(response_curve_message(STAMP, branches, ()))
+    assert (cloud.header.stamp.sec, cloud.header.stamp.nanosec) == (12, 345)
+    expected = [
+        {
+            "speed": solution.speed,
+            "eccentricity": max(one.eccentricity_max for one in solution.journals.values()),
+            "arc": arc,
+            "branch": index,
+            "stable": int(kind is None),
+            "detached": 0,
+        }
+        for index, branch in enumerate(branches)
+        for arc, (solution, kind) in enumerate(
+            zip(branch.solutions, branch.instability, strict=True)
+        )
+    ]
+    assert read(cloud) == expected
+    assert {point["stable"] for point in expected} == {0, 1}
+    assert cloud.is_dense
+
+
+def test_detached_branches_follow_with_a_mark():
+    branches = result().curve.branches
+    points = read(sent(response_curve_message(STAMP, branches, branches[:1])))
+    detached = [point for point in points if point["detached"]]
+    assert len(detached) == len(branches[0].values)
+    assert {point["branch"] for point in detached} == {len(branches)}
+    assert points.index(detached[0]) == sum(len(branch.values) for branch in branches)
+
+
+def test_an_orbit_is_a_closed_line_in_metres():
+    """An ellipse of half axes 3 and 2 um about (1, -1) um."""
+    coefficients = np.array([[1e-6, -1e-6], [3e-6, 0.0], [0.0, 2e-6]])
+    motion = JournalMotion("damper_1", 1e-4, Harmonics(1), coefficients)
+    message = sent(orbit_message(STAMP, "rotor", motion, 64))
+    assert isinstance(message, PolygonStamped)
+    assert message.header.frame_id == "rotor"
+    points = np.array([(point.x, point.y, point.z) for point in message.polygon.points])
+    assert points.shape == (64, 3)
+    np.testing.assert_allclose(
+        ((points[:, 0] - 1e-6) / 3e-6) ** 2 + ((points[:, 1] + 1e-6) / 2e-6) ** 2, 1.0, rtol=1e-5
+    )
+    angles = np.unwrap(np.arctan2(points[:, 1] + 1e-6, points[:, 0] - 1e-6))
+    assert (np.diff(angles) > 0.0).all()
+    assert angles[-1] - angles[0] == pytest.approx(2 * np.pi * 63 / 64, abs=0.06)
+    assert not points[:, 2].any()

@@ -1,0 +1,84 @@
+"""When a curve is computed anew, and when an outdated one still tells something."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sfd_hbm_ros.machine import Load, Machine, override, read_machine
+from sfd_hbm_ros.node.worker.likeness import alike
+from sfd_hbm_ros.node.worker.renewal import LONGEST, QUIET, Renewal
+
+from ..process import PAPER_ROTOR
+
+PAPER = read_machine(PAPER_ROTOR)
+LOADED = replace(PAPER, loads=(Load("disk_3", (3.0, -400.0)),))
+
+
+def computed(changes: list[float], duration: float, end: float) -> list[tuple[float, float]]:
+    """Begin and end of the computations that were not interrupted, looked for each 10 ms."""
+    renewal, begun, found = Renewal(), None, []
+    waiting = sorted(changes)
+    for now in np.arange(0.0, end, 0.01).tolist():
+        while waiting and waiting[0] <= now:
+            renewal.change(waiting.pop(0))
+        if begun is not None and now >= begun + duration:
+            found.append((begun, now))
+            begun = None
+        if renewal.due(now, busy=begun is not None):
+            begun = now
+    return found
+
+
+def test_without_a_change_nothing_is_computed():
+    assert computed([], 1.0, 20.0) == []
+
+
+def test_it_begins_soon_after_the_last_of_several_changes():
+    [(begun, _)] = computed([1.0, 1.2, 1.4], 1.0, 20.0)
+    assert begun == pytest.approx(1.4 + QUIET, abs=0.02)
+
+
+def test_a_change_interrupts_and_is_computed():
+    [(begun, ended)] = computed([0.0, 2.0], 10.0, 30.0)
+    assert begun == pytest.approx(2.0 + QUIET, abs=0.02)
+    assert ended == pytest.approx(begun + 10.0, abs=0.02)
+
+
+@pytest.mark.parametrize("distance", [0.1, 0.7], ids=["without a pause", "with pauses"])
+@pytest.mark.parametrize("duration", [0.3, 3.0, 12.0])
+def test_changes_that_never_end_starve_no_computation(distance, duration):
+    changes = np.arange(0.0, 60.0, distance).tolist()
+    found = computed(changes, duration, 60.0)
+    begins = np.array([0.0, *(begun for begun, _ in found)])
+    assert np.diff(begins).max() <= LONGEST + max(QUIET, duration) + 0.05
+    assert len(found) >= 60.0 / (2.0 * LONGEST + duration) - 1
+
+
+def test_the_last_change_is_never_forgotten():
+    for last in np.arange(0.1, 12.0, 0.37).tolist():
+        found = computed([0.0, last / 2.0, last], 4.0, 40.0)
+        assert found[-1][0] >= last
+
+
+def changed(path: str, factor: float, machine: Machine = LOADED) -> Machine:
+    value = {"dampers.damper_1.viscosity": 0.028, "unbalance.disk_2.magnitude": 4.319e-4}[path]
+    return override(machine, path, value * factor)
+
+
+@pytest.mark.parametrize(
+    ("other", "expected"),
+    [
+        (LOADED, True),
+        (changed("dampers.damper_1.viscosity", 1.019), True),
+        (changed("dampers.damper_1.viscosity", 0.97), False),
+        (changed("unbalance.disk_2.magnitude", 1.03), False),
+        (override(LOADED, "loads.disk_3.force", [-3.0, -400.0]), True),  # it trembles
+        (override(LOADED, "loads.disk_3.force", [20.0, -400.0]), False),
+        (PAPER, False),
+        (override(LOADED, "gravity", True), False),
+    ],
+)
+def test_machines_are_alike_while_no_number_differs_by_much(other, expected):
+    assert alike(LOADED, other) is expected
+    assert alike(other, LOADED) is expected
