@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from sfd_hbm_ros.film import FilmModel, film_of
 from sfd_hbm_ros.hbm.clearance import greatest_eccentricity, largest_step
-from sfd_hbm_ros.hbm.film_terms import FilmTerms
+from sfd_hbm_ros.hbm.film_terms import FilmTerms, LatestTerms
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.solution import Solution
 from sfd_hbm_ros.machine import Machine, MachineError
@@ -156,7 +156,7 @@ class Equations:
         amplitudes = harmonics.amplitudes(x.reshape(self.force.shape))
         rotor = (condensed.stiffness_slope @ amplitudes[..., np.newaxis])[..., 0]
         linear = harmonics.coefficients(rotor - condensed.force_slope)
-        return (linear - self._films(x).slope_by_speed()).ravel()
+        return (linear - self._films(x).slope_by_frequency()).ravel()
 
     def eccentricity(self, x: Array) -> float:
         """Greatest eccentricity of any journal at the time samples."""
@@ -170,17 +170,11 @@ class Equations:
         positions: Array = self.balance.harmonics.bases[0] @ x.reshape(self.force.shape)
         return positions
 
-    def _films(self, x: Array) -> FilmTerms:
-        """The films' terms; those at the latest x are kept, as residual and slope share them."""
-        latest = self.__dict__.get("_latest")
-        if latest is None or not np.array_equal(latest[0], x):
-            balance = self.balance
-            terms = FilmTerms(
-                balance.harmonics, balance.films, self.speed, x.reshape(self.force.shape)
-            )
-            latest = self.__dict__["_latest"] = x.copy(), terms
-        films: FilmTerms = latest[1]
-        return films
+    @cached_property
+    def _films(self) -> LatestTerms:
+        harmonics, films = self.balance.harmonics, self.balance.films
+        shape = self.force.shape
+        return LatestTerms(lambda x: FilmTerms(harmonics, films, self.speed, x.reshape(shape)))
 
     def _imbalance(self, x: Array, films: FilmTerms) -> Array:
         return self.rotor_force(x) - (self.force + films.force()).ravel()

@@ -1,13 +1,13 @@
 """The films' terms in the harmonic balance equations, by alternating frequency and time."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.film import FilmForces, FilmModel
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.jacobian import sampled_products, subtract_products
+from sfd_hbm_ros.hbm.sampling import Film, Motion, SampledFilm, sampled
 
 Array = NDArray[np.float64]
 
@@ -19,56 +19,80 @@ class FilmTerms:
     ----------
     harmonics : Harmonics
         The motion's harmonics.
-    films : sequence of FilmModel
+    films : sequence of Film
         The film of each journal.
-    speed : float
-        Rotor speed [rad/s].
+    frequency : float
+        Frequency of which the harmonics are multiples, such as the rotor speed [rad/s].
     x : (rows, n) array
         Coefficients of the n = 2 coordinates a film [m].
     """
 
     def __init__(
-        self, harmonics: Harmonics, films: Sequence[FilmModel], speed: float, x: Array
+        self, harmonics: Harmonics, films: Sequence[Film], frequency: float, x: Array
     ) -> None:
-        self._harmonics, self._speed = harmonics, speed
+        self._harmonics, self._frequency = harmonics, frequency
         position, velocity, acceleration = (
-            speed**order * (basis @ x) for order, basis in enumerate(harmonics.bases)
+            frequency**order * (basis @ x) for order, basis in enumerate(harmonics.bases)
         )
-        columns = [slice(2 * journal, 2 * journal + 2) for journal in range(len(films))]
-        self._rates = [(velocity[:, pair], acceleration[:, pair]) for pair in columns]
-        self._forces: list[FilmForces] = [
-            film.linearise(position[:, pair], *rates)
-            for film, pair, rates in zip(films, columns, self._rates, strict=True)
+        columns = (slice(2 * journal, 2 * journal + 2) for journal in range(len(films)))
+        self._films: list[SampledFilm] = [
+            sampled(film, harmonics, (position[:, pair], velocity[:, pair], acceleration[:, pair]))
+            for film, pair in zip(films, columns, strict=True)
         ]
 
     def force(self) -> Array:
         """Coefficients of the forces [N], (rows, n)."""
-        samples = np.concatenate([film.force for film in self._forces], axis=1)
-        force: Array = self._harmonics.projection @ samples
-        return force
+        return np.concatenate(
+            [film.harmonics.projection @ film.forces.force for film in self._films], axis=1
+        )
 
     def subtract_derivative(self, matrix: Array) -> None:
         """Subtract the derivative of `force` by the coefficients from a (rows n, rows n) array."""
-        harmonics, n = self._harmonics, 2 * len(self._forces)
+        harmonics, n = self._harmonics, 2 * len(self._films)
         blocks = matrix.reshape(harmonics.rows, n, harmonics.rows, n)
-        multiples = np.array(harmonics.multiples)
-        frequencies = np.array(self._speed * harmonics.orders, dtype=float)
-        for journal, film in enumerate(self._forces):
-            slopes = np.array([film.by_position, film.by_velocity, film.by_acceleration])
-            spectra = harmonics.spectrum @ slopes.reshape(3, harmonics.samples, 4)
+        multiples, frequencies = harmonics.indices, self._frequency * harmonics.indices
+        frequencies = frequencies / harmonics.revolutions
+        for journal, film in enumerate(self._films):
+            f, samples = film.forces, film.harmonics.samples
+            slopes = np.array([f.by_position, f.by_velocity, f.by_acceleration])
+            spectra = film.harmonics.spectrum @ slopes.reshape(3, samples, 4)
             spectra = spectra.reshape(3, 2, -1, 4)
             subtract_products(blocks, 2 * journal, spectra, multiples, frequencies)
 
-    def slope_by_speed(self) -> Array:
-        """Derivative of `force` by the speed at the same coefficients [N s], (rows, n)."""
-        changes = [
-            sampled_products(
-                film.by_velocity,
-                velocity / self._speed,
-                film.by_acceleration,
-                (2.0 / self._speed) * acceleration,
-            )
-            for film, (velocity, acceleration) in zip(self._forces, self._rates, strict=True)
-        ]
-        slope: Array = self._harmonics.projection @ np.concatenate(changes, axis=1)
-        return slope
+    def slope_by_frequency(self) -> Array:
+        """Derivative of `force` by the frequency at the same coefficients [N s], (rows, n)."""
+        w = self._frequency
+        return self.slope_by_rates(lambda motion: (motion[1] / w, (2.0 / w) * motion[2]))
+
+    def slope_by_rates(self, changes: Callable[[Motion], tuple[Array, Array]]) -> Array:
+        """Derivative of `force` by what changes a motion's rates but not its positions, (rows, n).
+
+        Parameters
+        ----------
+        changes : callable
+            Derivatives of velocity and acceleration, (samples, 2) each, of a motion.
+        """
+        parts = []
+        for film in self._films:
+            velocity, acceleration = changes(film.motion)
+            slopes = film.forces.by_velocity, film.forces.by_acceleration
+            change = sampled_products(slopes[0], velocity, slopes[1], acceleration)
+            parts.append(film.harmonics.projection @ change)
+        return np.concatenate(parts, axis=1)
+
+
+class LatestTerms:
+    """Film terms as a function of the unknowns x that keeps the latest.
+
+    Residual, Jacobian and slopes are asked for one after another at the same x.
+    """
+
+    def __init__(self, terms_at: Callable[[Array], FilmTerms]) -> None:
+        self._terms_at = terms_at
+        self._latest: tuple[Array, FilmTerms] | None = None
+
+    def __call__(self, x: Array) -> FilmTerms:
+        """The terms at x."""
+        if self._latest is None or not np.array_equal(self._latest[0], x):
+            self._latest = x.copy(), self._terms_at(x)
+        return self._latest[1]

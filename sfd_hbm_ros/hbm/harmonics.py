@@ -71,8 +71,12 @@ class Harmonics:
     @cached_property
     def orders(self) -> NDArray[np.inexact[Any]] | NDArray[np.intp]:
         """Orders of the speed, (orders,): whole numbers where a period is one revolution."""
-        multiples = np.array(self.multiples)
-        return multiples if self.revolutions == 1 else multiples / self.revolutions
+        return self.indices if self.revolutions == 1 else self.indices / self.revolutions
+
+    @cached_property
+    def indices(self) -> NDArray[np.int64]:
+        """The multiples as an array, (orders,)."""
+        return np.array(self.multiples)
 
     def only(self, multiples: tuple[int, ...]) -> "Harmonics":
         """A group of these harmonics, with the same samples."""

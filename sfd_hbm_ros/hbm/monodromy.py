@@ -65,14 +65,20 @@ def rates(
         stiffness[corner] -= film.by_position
     if turning:  # q = R p: q' = R (p' + r J p), q'' = R (p'' + 2 r J p' - r^2 p)
         ratio = turning / frequency
-        quarter = np.kron(np.eye(m // 2), [[0.0, -1.0], [1.0, 0.0]])
-        stiffness += ratio * damping @ quarter - ratio**2 * mass
-        damping += 2.0 * ratio * mass @ quarter
+        stiffness += ratio * _times_quarter(damping) - ratio**2 * mass
+        damping += 2.0 * ratio * _times_quarter(mass)
     matrices = np.zeros((samples + 1, 2 * m, 2 * m))
     matrices[:, :m, m:] = np.eye(m)
     matrices[:-1, m:] = -np.linalg.solve(mass, np.concatenate([stiffness, damping], axis=2))
     matrices[-1] = matrices[0]
     return matrices
+
+
+def _times_quarter(matrices: Array) -> Array:
+    """The matrices (..., m) times the rotation J of every pair of coordinates by a right angle."""
+    product = np.empty_like(matrices)
+    product[..., ::2], product[..., 1::2] = matrices[..., 1::2], -matrices[..., ::2]
+    return product
 
 
 def monodromy(rates: Array, period: float) -> Array:

@@ -11,18 +11,17 @@ is of no account, and one more equation fixes it (Seydel 2010, Practical Bifurca
 Analysis, sec. 7.1).
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.film import FilmModel
 from sfd_hbm_ros.hbm.balance import HarmonicBalance
 from sfd_hbm_ros.hbm.clearance import greatest_eccentricity, largest_step
+from sfd_hbm_ros.hbm.film_terms import FilmTerms, LatestTerms
 from sfd_hbm_ros.hbm.harmonics import Harmonics
-from sfd_hbm_ros.hbm.turning_frame import TurningMotion, slope_by_turning, turning_forces
+from sfd_hbm_ros.hbm.turning_frame import TurningFilm, slopes_by_turning
 from sfd_hbm_ros.hbm.turning_rotor import TurningRotor
 
 Array = NDArray[np.float64]
@@ -66,41 +65,20 @@ class QuasiPeriodicEquations:
     def linearise(self, x: Array) -> tuple[Array, Array]:
         """Imbalance of the forces and of the phase [N], and its derivative by the unknowns."""
         q, w = x[:-1], float(x[-1])
-        harmonics = self.harmonics
         linear, force = self._rotor.at(w)
-        by_frequency = self._rotor.slope_by_frequency(w) @ q
-        residual = linear @ q - force
-        blocks = linear.reshape((harmonics.rows, self.balance.clearances.size) * 2)
-        imbalance, slope = (part.reshape(blocks.shape[:2]) for part in (residual, by_frequency))
-        e0, e1, e2 = (basis[:, np.newaxis, np.newaxis, :] for basis in harmonics.bases)
-        for columns, film, motion in self._journals(q, w):
-            f = turning_forces(film, self.speed, motion)
-            change = np.einsum("tij,tj->ti", f.by_velocity, motion.velocity / w)
-            change += np.einsum("tij,tj->ti", f.by_acceleration, 2.0 * motion.acceleration / w)
-            imbalance[:, columns] -= harmonics.projection @ f.force
-            slope[:, columns] -= harmonics.projection @ change
-            by_coefficients = (
-                f.by_position[..., np.newaxis] * e0
-                + f.by_velocity[..., np.newaxis] * (w * e1)
-                + f.by_acceleration[..., np.newaxis] * (w * w * e2)
-            )
-            block = harmonics.projection @ by_coefficients.reshape(harmonics.samples, -1)
-            block = block.reshape(harmonics.rows, 2, 2, harmonics.rows)
-            blocks[:, columns, :, columns] -= block.transpose(0, 1, 3, 2)
+        films = self._films(x)
+        residual = linear @ q - force - films.force().ravel()
+        by_frequency = self._rotor.slope_by_frequency(w) @ q - films.slope_by_frequency().ravel()
+        films.subtract_derivative(linear)
         phase = self.load * self.phase
         jacobian = np.block([[linear, by_frequency[:, np.newaxis]], [phase, 0.0]])
         return np.append(residual, phase @ q), jacobian
 
     def slope_by_speed(self, x: Array) -> Array:
         """Derivative of the residual by the speed [N s] at the same w, (rows n + 1,)."""
-        q, w = x[:-1], float(x[-1])
-        linear, force = self._rotor.slope_by_speed(w)
-        slope = linear @ q - force
-        rows = slope.reshape(self.harmonics.rows, -1)
-        for columns, film, motion in self._journals(q, w):
-            by_speed = slope_by_turning(film, self.speed, motion)
-            rows[:, columns] -= self.harmonics.projection @ by_speed
-        return np.append(slope, 0.0)
+        linear, force = self._rotor.slope_by_speed(float(x[-1]))
+        by_turning = self._films(x).slope_by_rates(slopes_by_turning)
+        return np.append(linear @ x[:-1] - force - by_turning.ravel(), 0.0)
 
     def rotor_force(self, x: Array) -> Array:
         """Force that moves the rotor with the coefficients [N], (rows n,)."""
@@ -124,11 +102,11 @@ class QuasiPeriodicEquations:
     def _rotor(self) -> TurningRotor:
         return TurningRotor(self.balance.condensation, self.harmonics, self.speed)
 
-    def _journals(self, q: Array, w: float) -> Iterator[tuple[slice, FilmModel, TurningMotion]]:
-        """Columns, film and sampled motion of each damper."""
-        e0, e1, e2 = self.harmonics.bases
-        rows = q.reshape(self.harmonics.rows, -1)
-        for damper, film in enumerate(self.balance.films):
-            columns = slice(2 * damper, 2 * damper + 2)
-            own = rows[:, columns]
-            yield columns, film, TurningMotion(e0 @ own, w * (e1 @ own), w * w * (e2 @ own))
+    @cached_property
+    def _films(self) -> LatestTerms:
+        films = [TurningFilm(film, self.speed) for film in self.balance.films]
+        return LatestTerms(
+            lambda x: FilmTerms(
+                self.harmonics, films, float(x[-1]), x[:-1].reshape(self.harmonics.rows, -1)
+            )
+        )

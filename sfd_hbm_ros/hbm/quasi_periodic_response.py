@@ -10,7 +10,7 @@ from sfd_hbm_ros.hbm.floquet import Stability, settled_stability
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.monodromy import FilmSlopes, monodromy, rates
 from sfd_hbm_ros.hbm.solution import JournalMotion, Solution
-from sfd_hbm_ros.hbm.turning_frame import TurningMotion
+from sfd_hbm_ros.hbm.turning_frame import absolute
 from sfd_hbm_ros.rotor import reduce_model
 
 Array = NDArray[np.float64]
@@ -114,8 +114,8 @@ def quasi_periodic_stability(
         angle = response.harmonics.angles(2 * steps)
         films = []
         for film, journal in zip(balance.films, response.journals.values(), strict=True):
-            motion = TurningMotion(*(journal.at(angle, i) * w**i for i in (0, 1, 2)))
-            f = film.linearise(*motion.absolute(speed))
+            p, velocity, acceleration = (journal.at(angle, i) * w**i for i in (0, 1, 2))
+            f = film.linearise(*absolute(speed, (p, velocity, acceleration)))
             films.append(FilmSlopes(f.by_position, f.by_velocity, f.by_acceleration))
         return monodromy(rates(rotor, films, speed, w, turning=speed), 2.0 * np.pi)
 
