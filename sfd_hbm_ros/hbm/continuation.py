@@ -5,14 +5,14 @@ clearance and the parameter by its range, so that the length of the arc has no u
 as wide in eccentricity as in the parameter. Folds are passed as any other point.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
-from sfd_hbm_ros.hbm.cubic import cubic_through
 from sfd_hbm_ros.hbm.family import Family, FamilyMember
+from sfd_hbm_ros.hbm.hermite import along_branch
 from sfd_hbm_ros.hbm.options import DEFAULTS, ContinuationOptions, NewtonOptions
 from sfd_hbm_ros.hbm.points import Point, Stop
 from sfd_hbm_ros.rotor import ResonanceError
@@ -25,6 +25,7 @@ ROUNDING = 1e-8
 _OUTSIDE = 1.0 - 1e-9  # eccentricity at which the film's forces can no longer be resolved
 _CROWDED = 0.97  # eccentricity beyond which a step that fails shows that no room is left
 _STAGNATION = 0.1  # ratio of successive residuals that shows that only rounding is left
+_BEHIND = 2  # points besides the last that say where the next one lies
 _NUDGE = 1e-9  # of the parameter's range, by which an exact resonance is stepped over
 
 
@@ -79,10 +80,10 @@ class Branch:
         options = self.options
         point = first = self._point(self._x, self.start, self._direction, 0)
         yield point
-        before: Point | None = None
+        behind: list[Point] = []
         step = options.first_step
         for _ in range(options.points):
-            following = self.corrected(point, step, before)
+            following = self.corrected(point, step, behind)
             if following is None or not self._smooth(point, following, step):
                 step *= 0.5
                 if step < options.shortest_step:
@@ -97,7 +98,8 @@ class Branch:
                 yield self._last(point, following)
                 self.stop = Stop.RANGE
                 return
-            before, point = point, following
+            behind = [point, *behind[: _BEHIND - 1]]
+            point = following
             yield point
             if point.eccentricity > options.eccentricity:
                 self.stop = Stop.CLEARANCE
@@ -112,14 +114,13 @@ class Branch:
         """Distance of a point from another along the other's tangent, as `corrected` takes it."""
         return float(point.tangent @ (self._scaled(other) - self._scaled(point)))
 
-    def corrected(self, point: Point, step: float, other: Point | None = None) -> Point | None:
+    def corrected(self, point: Point, step: float, others: Sequence[Point] = ()) -> Point | None:
         """The point of the branch at a distance `step` along the tangent of another, if any.
 
-        Where another neighbour of that one is given, it is sought on the cubic through both.
+        Where other neighbours of that one are given, the nearest first, it is sought along all.
         """
-        predicted = self._scaled(point) + step * point.tangent
-        cubic = cubic_through(point, other, self._scale) if other else None
-        unknowns, before = cubic(step) if cubic else predicted, np.inf
+        unknowns, before = along_branch([point, *others], self._scale)(step), np.inf
+        distance = point.tangent @ self._scaled(point) + step
         for iteration in range(self.options.iterations + 1):
             value, x = unknowns[-1] * self._scale[-1], unknowns[:-1] * self._scale[:-1]
             equations = self._at(value)
@@ -131,7 +132,7 @@ class Branch:
             norm = float(np.linalg.norm(residual))
             if self._balanced(equations, x, norm, before):
                 return self._with_tangent(equations, value, x, matrix, iteration)
-            constraint = point.tangent @ (unknowns - predicted)
+            constraint = point.tangent @ unknowns - distance
             try:
                 unknowns = unknowns - _solved(matrix, np.append(residual, constraint))
             except np.linalg.LinAlgError:

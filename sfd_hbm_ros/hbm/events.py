@@ -33,7 +33,7 @@ def locate(
     found: dict[float, Point] = {0.0: before}
 
     def quantity(step: float) -> float:
-        point = found.get(step) or branch.corrected(before, step, after)
+        point = found.get(step) or branch.corrected(before, step, [after])
         if point is None:
             raise ArithmeticError("the corrector failed")
         found[step] = point
