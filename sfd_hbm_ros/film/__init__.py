@@ -2,11 +2,11 @@
 
 from collections.abc import Callable
 
-from sfd_hbm_ros.film.protocol import FilmForces, FilmModel
+from sfd_hbm_ros.film.protocol import FilmForces, FilmModel, Motion
 from sfd_hbm_ros.film.short import ShortFilm
 from sfd_hbm_ros.machine import Damper
 
-__all__ = ["FILMS", "FilmForces", "FilmModel", "ShortFilm", "film_of"]
+__all__ = ["FILMS", "FilmForces", "FilmModel", "Motion", "ShortFilm", "film_of"]
 
 
 def _short(damper: Damper) -> ShortFilm:

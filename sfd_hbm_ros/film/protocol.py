@@ -1,12 +1,15 @@
 """What the solver asks of a squeeze film, whatever its model."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+Motion: TypeAlias = tuple[Array, Array, Array]
+"""Position [m], velocity [m/s] and acceleration [m/s2] of a journal at n times, (n, 2) each."""
 
 
 @dataclass(frozen=True)

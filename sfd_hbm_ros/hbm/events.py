@@ -2,12 +2,11 @@
 
 from collections.abc import Callable, Iterable, Iterator
 
-from scipy.optimize import brentq
-
+from sfd_hbm_ros.hbm.bracketing import zero_between
 from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.points import Point
 
-_ACCURACY = 1e-6  # of the arc's step in which an event lies
+_ACCURACY = 1e-8  # of the arc's step in which an event lies
 
 
 def locate(
@@ -40,8 +39,8 @@ def locate(
         return event(point)
 
     try:
-        step = brentq(quantity, 0.0, length, xtol=_ACCURACY * length, rtol=1e-12)
-    except (ArithmeticError, ValueError):
+        step = zero_between(quantity, 0.0, length, _ACCURACY * length)
+    except ArithmeticError:
         return None
     quantity(step)
     return found[step]

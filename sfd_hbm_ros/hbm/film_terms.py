@@ -5,9 +5,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sfd_hbm_ros.film import Motion
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.jacobian import sampled_products, subtract_products
-from sfd_hbm_ros.hbm.sampling import Film, Motion, SampledFilm, sampled
+from sfd_hbm_ros.hbm.sampling import Film, SampledFilm, sampled
 
 Array = NDArray[np.float64]
 

@@ -27,6 +27,8 @@ REACH = 20.0
 
 _SETTLED = 1e-3  # relative change of the leading multiplier at which halving the step ends,
 _EXACT = 1e-7  # which must also leave no doubt on which side of 1 it lies
+_CLEAR = 1e-2  # distance from 1 within which few steps may agree by chance,
+_FINE = 64  # and these many do not
 _ROUND = 1e-9  # of the clearance by which a circular orbit may be off its circle
 _ROUNDING = 1e-6  # by which a multiplier of an undamped mode may exceed 1
 
@@ -117,7 +119,7 @@ def settled_stability(
     accurate the others are: near the clearance the response itself has too few harmonics.
     """
     leading, accuracy = np.inf, _ROUNDING
-    for steps in (32, 64, 128, 256, 512, 1024, 2048, 4096):
+    for steps in (16, 32, 64, 128, 256, 512, 1024, 2048, 4096):
         with np.errstate(over="ignore", invalid="ignore"):
             matrix = monodromy_in(steps)
         if not np.all(np.isfinite(matrix)):
@@ -129,7 +131,9 @@ def settled_stability(
             accuracy = max(_ROUNDING, float(errors.min()))
         multipliers = _in_falling_order(multipliers)
         before, leading = leading, abs(multipliers[0])
-        if abs(leading - before) < min(_SETTLED * leading, max(_EXACT, 0.1 * abs(leading - 1.0))):
+        doubt = abs(leading - 1.0)
+        enough = steps >= _FINE or doubt > _CLEAR
+        if enough and abs(leading - before) < min(_SETTLED * leading, max(_EXACT, 0.1 * doubt)):
             break
     return Stability(multipliers, accuracy)
 
@@ -158,8 +162,7 @@ def _rates(balance: HarmonicBalance, rotor: RotorModel, solution: Solution, samp
     turn = _turns(angle if rotating else np.zeros(samples))
     films = []
     for film, motion in zip(balance.films, solution.journals.values(), strict=True):
-        orbit = [motion.at(angle, derivative) * w**derivative for derivative in (0, 1, 2)]
-        f = film.linearise(*orbit)
+        f = film.linearise(*motion.over(samples, w))
         slopes = f.by_position, f.by_velocity, f.by_acceleration
         films.append(FilmSlopes(*(_seen(slope, turn) for slope in slopes)))
     return rates(rotor, films, w, w, w if rotating else 0.0)

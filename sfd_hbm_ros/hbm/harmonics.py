@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -102,6 +102,10 @@ class Harmonics:
         basis[:, 2::2] = orders**derivative * np.sin(shifted)
         return basis
 
+    def bases_over(self, points: int) -> tuple[Array, Array, Array]:
+        """Basis at even angles over a period and its first and second derivative, kept."""
+        return _bases_over(self, points)
+
     def angles(self, points: int) -> Array:
         """Rotor angles [rad] evenly spaced over a period, (points,)."""
         return 2.0 * np.pi * self.revolutions * np.arange(points) / points
@@ -109,8 +113,7 @@ class Harmonics:
     @cached_property
     def bases(self) -> tuple[Array, Array, Array]:
         """Basis at the time samples and its first and second derivative, (samples, rows) each."""
-        angle = self.angles(self.samples)
-        return self.basis_at(angle), self.basis_at(angle, 1), self.basis_at(angle, 2)
+        return self.bases_over(self.samples)
 
     @cached_property
     def fine_basis(self) -> Array:
@@ -177,3 +180,9 @@ class Harmonics:
         (rows, n, rows, n) array, zero between different orders.
         """
         return block_diagonal(np.array(blocks, dtype=complex, order="C"))
+
+
+@lru_cache(maxsize=16)
+def _bases_over(harmonics: Harmonics, points: int) -> tuple[Array, Array, Array]:
+    angle = harmonics.angles(points)
+    return harmonics.basis_at(angle), harmonics.basis_at(angle, 1), harmonics.basis_at(angle, 2)

@@ -53,25 +53,45 @@ def rates(
     -------
     (n + 1, 2m, 2m) array, the last matrix being the first.
     """
-    w, m, samples = frequency, rotor.size, len(films[0].by_position)
-    mass, damping, stiffness = (
-        np.repeat(matrix[np.newaxis], samples, axis=0)
-        for matrix in (w * w * rotor.M, w * (rotor.C + speed * rotor.G), rotor.K)
+    w, m = frequency, rotor.size
+    mass, damping, stiffness = w * w * rotor.M, w * (rotor.C + speed * rotor.G), rotor.K
+    terms = [
+        (-film.by_position, -w * film.by_velocity, -w * w * film.by_acceleration) for film in films
+    ]
+    if turning:
+        stiffness, damping = _turned(stiffness, damping, mass, turning / w)
+        terms = [(*_turned(*film, turning / w), film[2]) for film in terms]
+    journals, places = rotor.journals.ravel(), [slice(2 * j, 2 * j + 2) for j in range(len(films))]
+    samples, n = len(terms[0][0]), len(journals)
+    rows, film_mass = np.zeros((samples, n, 2 * m)), np.zeros((samples, n, n))
+    for (by_position, by_rate, by_acceleration), place, (x, y) in zip(
+        terms, places, rotor.journals, strict=True
+    ):
+        rows[:, place, x : y + 1] = by_position
+        rows[:, place, m + x : m + y + 1] = by_rate
+        film_mass[:, place, place] = by_acceleration
+    # the films add to the journals' rows alone: the mass is inverted by Woodbury's formula
+    rotor_part = np.linalg.solve(mass, np.hstack([stiffness, damping]))
+    reach = np.linalg.solve(mass, np.eye(m)[:, journals])
+    film_part = np.linalg.solve(
+        np.eye(n) + film_mass @ reach[journals], rows - film_mass @ rotor_part[journals]
     )
-    for (x, y), film in zip(rotor.journals, films, strict=True):
-        corner = (slice(None), slice(x, y + 1), slice(x, y + 1))
-        mass[corner] -= w * w * film.by_acceleration
-        damping[corner] -= w * film.by_velocity
-        stiffness[corner] -= film.by_position
-    if turning:  # q = R p: q' = R (p' + r J p), q'' = R (p'' + 2 r J p' - r^2 p)
-        ratio = turning / frequency
-        stiffness += ratio * _times_quarter(damping) - ratio**2 * mass
-        damping += 2.0 * ratio * _times_quarter(mass)
     matrices = np.zeros((samples + 1, 2 * m, 2 * m))
     matrices[:, :m, m:] = np.eye(m)
-    matrices[:-1, m:] = -np.linalg.solve(mass, np.concatenate([stiffness, damping], axis=2))
+    matrices[:-1, m:] = -rotor_part - reach @ film_part
     matrices[-1] = matrices[0]
     return matrices
+
+
+def _turned(stiffness: Array, damping: Array, mass: Array, ratio: float) -> tuple[Array, Array]:
+    """Stiffness and damping as a frame sees them that turns at a multiple of the frequency.
+
+    q = R p, q' = R (p' + r J p), q'' = R (p'' + 2 r J p' - r^2 p), with matrices (..., m, m).
+    """
+    return (
+        stiffness + ratio * _times_quarter(damping) - ratio**2 * mass,
+        damping + 2.0 * ratio * _times_quarter(mass),
+    )
 
 
 def _times_quarter(matrices: Array) -> Array:

@@ -111,11 +111,9 @@ def quasi_periodic_stability(
     rotor = reduce_model(balance.model, _REACH * speed)
 
     def monodromy_in(steps: int) -> Array:
-        angle = response.harmonics.angles(2 * steps)
         films = []
         for film, journal in zip(balance.films, response.journals.values(), strict=True):
-            p, velocity, acceleration = (journal.at(angle, i) * w**i for i in (0, 1, 2))
-            f = film.linearise(*absolute(speed, (p, velocity, acceleration)))
+            f = film.linearise(*absolute(speed, journal.over(2 * steps, w)))
             films.append(FilmSlopes(f.by_position, f.by_velocity, f.by_acceleration))
         return monodromy(rates(rotor, films, speed, w, turning=speed), 2.0 * np.pi)
 

@@ -1,18 +1,15 @@
 """As many time samples of a film as the spectrum of its force asks for."""
 
 from functools import lru_cache
-from typing import NamedTuple, Protocol, TypeAlias
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.film import FilmForces
+from sfd_hbm_ros.film import FilmForces, Motion
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 
 Array = NDArray[np.float64]
-
-Motion: TypeAlias = tuple[Array, Array, Array]
-"""Position [m], velocity and acceleration of a journal at time samples, (samples, 2) each."""
 
 _FEWEST = 16
 _RESOLVED = 1e-10  # part of the force at the end of the spectrum; what folds back is its square

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sfd_hbm_ros.film import Motion
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.newton import Outcome
 
@@ -83,6 +84,21 @@ class JournalMotion:
     def eccentricity_mean(self) -> float:
         """Eccentricity averaged over the period."""
         return float(np.linalg.norm(self._samples, axis=1).mean()) / self.clearance
+
+    def over(self, points: int, frequency: float) -> Motion:
+        """Motion at times evenly spaced over the period.
+
+        Parameters
+        ----------
+        points : int
+            Their number.
+        frequency : float
+            Frequency of which the harmonics are multiples [rad/s].
+        """
+        position, rate, second = (
+            basis @ self.coefficients for basis in self.harmonics.bases_over(points)
+        )
+        return position, frequency * rate, frequency**2 * second
 
     def at(self, angle: Array, derivative: int = 0) -> Array:
         """Positions at rotor angles [rad], or their derivatives by the angle, (len(angle), 2)."""

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.film import FilmForces, FilmModel
-from sfd_hbm_ros.hbm.sampling import Motion
+from sfd_hbm_ros.film import FilmForces, FilmModel, Motion
 
 Array = NDArray[np.float64]
 
