@@ -28,11 +28,11 @@ def locate(
     -------
     The point, or None where the corrector found no point of the branch on the way.
     """
-    length = branch.distance(before, after)
+    length = branch.corrector.distance(before, after)
     found: dict[float, Point] = {0.0: before}
 
     def quantity(step: float) -> float:
-        point = found.get(step) or branch.corrected(before, step, [after])
+        point = found.get(step) or branch.corrector.corrected(before, step, [after])
         if point is None:
             raise ArithmeticError("the corrector failed")
         found[step] = point

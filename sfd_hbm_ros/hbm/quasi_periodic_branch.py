@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.balance import HarmonicBalance
-from sfd_hbm_ros.hbm.continuation import Branch
+from sfd_hbm_ros.hbm.corrector import Corrector
 from sfd_hbm_ros.hbm.family import FamilyMember
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.options import ContinuationOptions
@@ -111,11 +111,11 @@ def quasi_periodic_branch(
             "loads, so that its orbits are circles"
         )
     family, root = _departure(balance, circle, harmonics)
-    beside = Branch(family, root.x, circle.speed, bounds[1], bounds, options)
+    corrector = Corrector(family, circle.speed, bounds[1] - bounds[0])
     absent = np.ones(root.x.size, dtype=bool)
     absent[: balance.clearances.size] = absent[-1] = False
     for step in _STEPS:
-        first = beside.corrected(root, step)
+        first = corrector.corrected(root, step)
         if first is not None and bounds[0] <= first.value <= bounds[1]:
             return QuasiPeriodicBranch(family, first, absent, bounds, options)
     return None

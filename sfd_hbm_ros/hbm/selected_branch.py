@@ -107,7 +107,9 @@ class SelectedBranch(Branch):
                 if changed is None:
                     continue
                 if at.point is not point and at.group == group:  # refused: a shorter step
-                    step = max(0.5 * branch.distance(at.point, point), options.shortest_step)
+                    step = max(
+                        0.5 * branch.corrector.distance(at.point, point), options.shortest_step
+                    )
                     options = replace(options, first_step=min(step, options.longest_step))
                 group, x, value = other, changed, at.point.value
                 direction = _regrouped(balance, at, other)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.balance import HarmonicBalance
 from sfd_hbm_ros.hbm.continuation import Branch
+from sfd_hbm_ros.hbm.corrector import Corrector
 from sfd_hbm_ros.hbm.family import Family, FamilyMember, MachineFamily
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.options import ContinuationOptions
@@ -109,9 +110,9 @@ def switch(
         return None
     tangent = np.append(null_vector(family.at(value), x, absent), 0.0)
     root = Point(value, x, tangent, solution.eccentricity_max, 0)
-    beside = Branch(family, x, value, bounds[1], bounds, options)
+    corrector = Corrector(family, value, bounds[1] - bounds[0])
     for step in _STEPS:
-        first = beside.corrected(root, step)
+        first = corrector.corrected(root, step)
         if first is not None and bounds[0] <= first.value <= bounds[1]:
             return SwitchedBranch(family, first, absent, bounds, options)
     return None

@@ -119,7 +119,7 @@ def test_points_are_ordered_and_near():
     points = list(branch)
     for before, after in itertools.pairwise(points):
         assert before.tangent @ after.tangent > np.cos(branch.options.turning)
-        assert branch.distance(before, after) < 0.031
+        assert branch.corrector.distance(before, after) < 0.031
     assert all(np.linalg.norm(point.tangent) == pytest.approx(1.0) for point in points)
 
 

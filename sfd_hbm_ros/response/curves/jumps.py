@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from sfd_hbm_ros.hbm import NewtonOptions
-from sfd_hbm_ros.hbm.continuation import ROUNDING
+from sfd_hbm_ros.hbm.corrector import ROUNDING
 from sfd_hbm_ros.hbm.newton import newton
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.journey import Leg, first_place, legs

@@ -118,7 +118,8 @@ def _by_arclength(way: Way, x: Array) -> Followed:
 def _last_before_fold(branch: Branch, before: Point, after: Point) -> Point | None:
     """The end of the way if it lies between a point and the fold that follows."""
     slope, back = before.tangent[-1], -after.tangent[-1]
-    rise = 0.5 * branch.distance(before, after) * slope**2 / (slope + back)  # if it is a parabola
+    length = branch.corrector.distance(before, after)
+    rise = 0.5 * length * slope**2 / (slope + back)  # if it is a parabola
     if before.value + 1.5 * rise * (branch.high - branch.low) < 1.0:
         return None
     fold = locate(branch, before, after, lambda point: float(point.tangent[-1]))
