@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from sfd_hbm_ros.machine.model import Machine
 
 MAX_ELEMENTS = 10_000
-"""Enough for any rotor; a slip of the keyboard must not fill the memory with matrices."""
+"""Enough for any rotor; a slip of the keyboard must not keep the machine busy for minutes."""
 
 
 def check_machine(machine: Machine) -> None:

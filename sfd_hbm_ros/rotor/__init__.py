@@ -1,7 +1,8 @@
 """The rotor: finite elements, condensation to the dampers' journals, whirl modes."""
 
 from sfd_hbm_ros.rotor.assembly import GRAVITY, assemble
-from sfd_hbm_ros.rotor.condensation import Condensation, Condensed
+from sfd_hbm_ros.rotor.condensation import Condensation
+from sfd_hbm_ros.rotor.condensed import Condensed
 from sfd_hbm_ros.rotor.criticals import CriticalSpeed, critical_speeds
 from sfd_hbm_ros.rotor.directions import Direction
 from sfd_hbm_ros.rotor.errors import ResonanceError

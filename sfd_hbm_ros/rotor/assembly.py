@@ -3,29 +3,22 @@
 Every shaft node has the coordinates (x, y, x', y'), where x' and y' are the rotations of the
 cross-section in the planes xz and yz: the slopes dx/dz and dy/dz where shear is small, that is,
 rotations about y and about -x. After the shaft's nodes come (x, y) of each damper's journal.
-
-An axisymmetric part has the same matrix A in both planes and enters as A (x) I. The speed W turns
-x into y; with b = x' + i y' a disk of inertias Id and Ip obeys Id b'' - i W Ip b' = moment, so
-that a polar inertia A enters the gyroscopic matrix as A (x) [[0, 1], [-1, 0]].
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from sfd_hbm_ros.machine import Machine
-from sfd_hbm_ros.rotor.arrays import ComplexArray, IndexArray, RealArray
-from sfd_hbm_ros.rotor.elements import BeamElement, beam_element
-from sfd_hbm_ros.rotor.model import RotorModel
+from sfd_hbm_ros.rotor.arrays import ComplexArray, IndexArray, RealArray, SparseArray
+from sfd_hbm_ros.rotor.model import Matrices, RotorModel
+from sfd_hbm_ros.rotor.parts import parts_of
 
 GRAVITY = 9.80665
 """Standard acceleration of gravity, along -y [m/s2]."""
-
-_BETWEEN = np.array([[1.0, -1.0], [-1.0, 1.0]])
-"""A unit spring between two coordinates."""
 
 
 def assemble(machine: Machine) -> RotorModel:
@@ -44,69 +37,35 @@ def assemble(machine: Machine) -> RotorModel:
     RotorModel
         Its matrices and linear forces.
     """
-    planar = _planar_matrices(machine)
-    M, C, K = (
-        np.kron(matrix, np.eye(2)).astype(float)
-        for matrix in (planar.mass, planar.damping, planar.stiffness)
+    journals = 4 * machine.nodes + np.arange(2 * len(machine.dampers)).reshape(-1, 2)
+    size = 4 * machine.nodes + journals.size
+    parts = list(parts_of(machine, journals))
+    matrices = Matrices(
+        M=_sum([(part.coordinates, part.mass) for part in parts], size),
+        C=_sum([(part.coordinates, part.damping) for part in parts], size),
+        G=_sum([(part.coordinates, part.gyroscopic) for part in parts], size),
+        K=_sum([(part.coordinates, part.stiffness) for part in parts], size),
     )
-    for bearing in machine.bearings:
-        x_y = slice(4 * bearing.node, 4 * bearing.node + 2)
-        C[x_y, x_y] += bearing.damping
-        K[x_y, x_y] += bearing.stiffness
     stations = {name: 4 * node + np.arange(2) for name, node in machine.stations.items()}
     return RotorModel(
-        M=M,
-        C=C,
-        G=np.kron(planar.polar, [[0.0, 1.0], [-1.0, 0.0]]).astype(float),
-        K=K,
-        journals=np.arange(4 * machine.nodes, len(M)).reshape(-1, 2),
+        matrices=matrices,
+        journals=journals,
         stations=stations,
-        unbalance=_unbalance(machine, stations, len(M)),
-        static_force=_static_force(machine, stations, M),
+        unbalance=_unbalance(machine, stations, size),
+        static_force=_static_force(machine, stations, matrices.M),
     )
 
 
-class _Planar(NamedTuple):
-    """Matrices of all but the bearings in one plane: (v, r) of every node, v of every journal."""
-
-    mass: RealArray
-    polar: RealArray
-    damping: RealArray
-    stiffness: RealArray
-
-
-def _planar_matrices(machine: Machine) -> _Planar:
-    """Return the matrices of shaft, disks and dampers in one plane."""
-    journals = 2 * machine.nodes
-    size = journals + len(machine.dampers)
-    planar = _Planar(*np.zeros((4, size, size)))
-    for first, element in _elements(machine):
-        span = slice(first, first + 4)
-        planar.mass[span, span] += element.mass
-        planar.polar[span, span] += element.gyroscopic
-        planar.stiffness[span, span] += element.stiffness
-    for disk in machine.disks:
-        v, r = 2 * disk.node, 2 * disk.node + 1
-        planar.mass[v, v] += disk.mass
-        planar.mass[r, r] += disk.diametral_inertia
-        planar.polar[r, r] += disk.polar_inertia
-    for journal, damper in enumerate(machine.dampers, start=journals):
-        ends = np.ix_([2 * damper.node, journal], [2 * damper.node, journal])
-        planar.mass[journal, journal] += damper.journal_mass
-        planar.damping[ends] += damper.bearing_damping * _BETWEEN
-        planar.stiffness[ends] += damper.bearing_stiffness * _BETWEEN
-        planar.stiffness[journal, journal] += damper.centering_stiffness
-    return planar
-
-
-def _elements(machine: Machine) -> Iterator[tuple[int, BeamElement]]:
-    """Yield the shaft's elements with the planar coordinate at which each begins."""
-    first = 0
-    for segment in machine.shaft:
-        element = beam_element(segment)
-        for _ in range(segment.elements):
-            yield first, element
-            first += 2
+def _sum(parts: Sequence[tuple[IndexArray, RealArray]], size: int) -> SparseArray:
+    """Add up the matrix of each part at its coordinates."""
+    rows, columns, entries = [], [], []
+    for coordinates, matrix in parts:
+        i, j = matrix.nonzero()
+        rows.append(coordinates[:, i].ravel())
+        columns.append(coordinates[:, j].ravel())
+        entries.append(np.broadcast_to(matrix[i, j], (len(coordinates), len(i))).ravel())
+    places = np.concatenate(rows), np.concatenate(columns)
+    return csr_array((np.concatenate(entries), places), shape=(size, size))
 
 
 def _unbalance(machine: Machine, stations: Mapping[str, IndexArray], size: int) -> ComplexArray:
@@ -118,11 +77,13 @@ def _unbalance(machine: Machine, stations: Mapping[str, IndexArray], size: int) 
     return amplitude
 
 
-def _static_force(machine: Machine, stations: Mapping[str, IndexArray], M: RealArray) -> RealArray:
+def _static_force(
+    machine: Machine, stations: Mapping[str, IndexArray], M: SparseArray
+) -> RealArray:
     """Return loads and weight; the mass matrix gives the weight that suits the elements."""
-    force = np.zeros(len(M))
+    force = np.zeros(M.shape[0])
     if machine.gravity:
-        fall = np.zeros(len(M))
+        fall = np.zeros(len(force))
         fall[1 : 4 * machine.nodes : 4] = -GRAVITY
         fall[4 * machine.nodes + 1 :: 2] = -GRAVITY
         force += M @ fall

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from sfd_hbm_ros.rotor.arrays import ComplexArray, RealArray
+from sfd_hbm_ros.rotor.arrays import ComplexArray, RealArray, SparseArray
 
 
 class Direction(StrEnum):
@@ -17,12 +17,12 @@ class Direction(StrEnum):
     PLANAR = "planar"
 
 
-def senses(M: RealArray, shapes: ComplexArray) -> RealArray:
+def senses(M: SparseArray, shapes: ComplexArray) -> RealArray:
     """Return the sense of modes, weighing each place by the mass that moves there.
 
     Parameters
     ----------
-    M : (N, N) array
+    M : (N, N) sparse array
         Mass matrix, x and y interleaved.
     shapes : (N, modes) complex array
         Shapes q, which move as Re(q exp(i w t)).

@@ -34,7 +34,7 @@ class BeamElement:
         Consistent mass with rotary inertia [kg, kg m, kg m2].
     gyroscopic : (4, 4) array
         Polar inertia of the turning cross-sections [kg, kg m, kg m2]. It couples the planes:
-        see `sfd_hbm_ros.rotor.assembly`.
+        see `sfd_hbm_ros.rotor.parts`.
     stiffness : (4, 4) array
         Bending and shear stiffness [N/m, N, N m].
     """
@@ -135,5 +135,6 @@ def _derivative(polynomials: RealArray) -> RealArray:
 
 
 def _product(polynomials: RealArray) -> RealArray:
-    """Integrate the product of every two polynomials from 0 to 1."""
-    return np.asarray(polynomials @ _MOMENTS @ polynomials.T)
+    """Integrate the product of every two polynomials from 0 to 1, symmetric to the last digit."""
+    product = polynomials @ _MOMENTS @ polynomials.T
+    return np.asarray(0.5 * (product + product.T))

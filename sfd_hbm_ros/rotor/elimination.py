@@ -1,10 +1,10 @@
-"""Elimination of the shaft from P q = f, Eqs. 9 to 11, for many frequencies in one call.
+"""The shaft's receptance at its ports by elimination, at many frequencies in one call.
 
-All matrices are pencils A = A_0 + c_1 A_1 + c_2 A_2 + c_3 A_3, of which every set of coefficients
-c gives one member. With Y = P21 inv(P11) and a dash for the derivative by whatever c varies with,
+The receptance is H = N^T inv(P11) [N, f] for unit forces at the ports and for the linear forces
+f. P11 = A_0 + c_1 A_1 + c_2 A_2 + c_3 A_3; with Y = N^T inv(P11) and a dash for the derivative by
+whatever the c vary with,
 
-    U  = P22 - Y P12,                V  = F2 - Y F1,
-    U' = P22' - Y P12' - Z P12,      V' = F2' - Y F1' - Z F1,      Z = (P21' - Y P11') inv(P11),
+    H = Y [N, f],    H' = Z [N, f],    Z = -Y P11' inv(P11),
 
 so that one banded factorisation of P11, transposed, serves values and derivatives alike.
 """
@@ -14,13 +14,7 @@ from typing import Any
 import numpy as np
 
 from sfd_hbm_ros.kernels import kernel, part
-from sfd_hbm_ros.rotor.arrays import ComplexArray, RealArray
-
-_RESULT = "Tuple((complex128[:, :, :, :, ::1], complex128[:, :, :, ::1], int64))"
-_PENCILS = ", ".join(["complex128[:, :, :, ::1]"] * 4)
-_FORCES = "complex128[:, :, ::1], complex128[:, :, ::1]"
-_COEFFICIENTS = ", ".join(["float64[:, :, ::1]"] * 2)
-_SIGNATURE = f"{_RESULT}({_PENCILS}, {_FORCES}, {_COEFFICIENTS})"
+from sfd_hbm_ros.rotor.arrays import ComplexArray, IndexArray, RealArray
 
 
 @part
@@ -85,112 +79,76 @@ def _solve(band: Any, pivots: Any, half: int, x: Any) -> None:
 
 
 @part
-def _entry(pencil: Any, c: Any, whole: float, i: int, j: int) -> Any:
-    """Entry of A for `whole` = 1, of its derivative for 0."""
-    varying = c[0] * pencil[1, i, j] + c[1] * pencil[2, i, j] + c[2] * pencil[3, i, j]
-    return whole * pencil[0, i, j] + varying
+def _set(band: Any, shaft: Any, c: Any) -> None:
+    """Set P11, transposed, with no fill-in yet."""
+    width = shaft.shape[2]
+    for i in range(shaft.shape[1]):
+        for j in range(width):
+            varying = c[0] * shaft[1, i, j] + c[1] * shaft[2, i, j] + c[2] * shaft[3, i, j]
+            band[i, j] = shaft[0, i, j] + varying
+        band[i, width:] = 0.0
 
 
 @part
-def _set(total: Any, pencil: Any, c: Any, whole: float) -> None:
-    """Set A or its derivative."""
-    for i in range(pencil.shape[1]):
-        for j in range(pencil.shape[2]):
-            total[i, j] = _entry(pencil, c, whole, i, j)
-
-
-@part
-def _subtract_bands(z: Any, y: Any, pencil: Any, c: Any, half: int) -> None:
-    """Subtract Y P11' from Z."""
-    n = pencil.shape[1]
+def _minus_product(z: Any, y: Any, shaft: Any, change: Any, half: int) -> None:
+    """Set z = -y P11'."""
+    n = len(y)
     for i in range(n):
+        z[i] = 0.0
         for j in range(max(0, i - half), min(n, i + half + 1)):
-            entry = _entry(pencil, c, 0.0, i, j - i + half)
-            for row in range(len(y)):
-                z[row, i] -= entry * y[row, j]
+            k = j - i + half
+            entry = change[0] * shaft[1, i, k] + change[1] * shaft[2, i, k]
+            z[i] -= (entry + change[2] * shaft[3, i, k]) * y[j]
 
 
 @part
-def _subtract_product(result: Any, y: Any, pencil: Any, c: Any, whole: float) -> None:
-    """Subtract Y P12, or with `whole` = 0 Y P12', from a matrix."""
-    for column in range(pencil.shape[1]):
-        for i in range(pencil.shape[2]):
-            entry = _entry(pencil, c, whole, column, i)
-            for row in range(len(y)):
-                result[row, column] -= y[row, i] * entry
+def _pick(result: Any, row: Any, ports: Any, forces: Any) -> None:
+    """Set a row of H from one of Y, or of H' from one of Z."""
+    for column in range(len(ports)):
+        result[column] = row[ports[column]]
+    for force in range(len(forces)):
+        total = 0.0 * row[0]
+        for i in range(len(row)):
+            total += row[i] * forces[force, i]
+        result[len(ports) + force] = total
 
 
-@part
-def _subtract_force(result: Any, y: Any, forces: Any, factors: Any) -> None:
-    """Subtract Y F1 from a vector."""
-    for k in range(len(forces)):
-        if factors[k] != 0.0:
-            for row in range(len(y)):
-                for i in range(y.shape[1]):
-                    result[row] -= factors[k] * y[row, i] * forces[k, i]
-
-
-@kernel(_SIGNATURE)
-def condense(
-    p11: ComplexArray,
-    p12: ComplexArray,
-    p21: ComplexArray,
-    p22: ComplexArray,
-    f1: ComplexArray,
-    f2: ComplexArray,
-    coefficients: RealArray,
-    factors: RealArray,
-) -> tuple[ComplexArray, ComplexArray, int]:
-    """Condense s systems of equations to d coordinates each, for m sets of coefficients.
+@kernel(
+    "Tuple((complex128[:, :, :, :, ::1], int64))(complex128[:, :, :, ::1], int64[::1],"
+    " complex128[:, :, ::1], float64[:, :, ::1])"
+)
+def eliminate(
+    shaft: ComplexArray, ports: IndexArray, forces: ComplexArray, coefficients: RealArray
+) -> tuple[ComplexArray, int]:
+    """Return the receptance of s systems for m sets of coefficients, and its derivative.
 
     Parameters
     ----------
-    p11 : (s, 4, n, 2 half + 1) complex array
-        Pencils of P11 transposed; entry (i, j) stands at [i, j - i + half].
-    p12, p21 : (s, 4, d, n) complex arrays
-        Pencils of P12 transposed and of P21.
-    p22 : (s, 4, d, d) complex array
-        Pencils of P22.
-    f1, f2 : (s, 2, n), (s, 2, d) complex arrays
-        Forces, to be multiplied by their factors and summed.
-    coefficients, factors : (2, m, 3), (2, m, 2) arrays
-        The pencils' coefficients and the forces' factors, then their derivatives.
+    shaft, ports, forces
+        `shaft`, `ports` and `shaft_force` of a `Partition`.
+    coefficients : (2, m, 3) array
+        The c of each set, then their derivatives.
 
     Returns
     -------
-    U and U' (2, m, s, d, d), V and V' (2, m, s, d), and the index of the first set of coefficients
-    whose P11 is singular, or -1.
+    H and H' (2, m, s, p, p + 2), and the index of the first set whose P11 is singular, or -1.
     """
-    systems, _, d, n = p12.shape
-    half = p11.shape[3] // 2
-    m = coefficients.shape[1]
-    u = np.empty((2, m, systems, d, d), dtype=np.complex128)
-    v = np.zeros((2, m, systems, d), dtype=np.complex128)
-    band, pivots = np.empty((n, 3 * half + 1), dtype=p11.dtype), np.empty(n, dtype=np.int64)
-    y, z = np.empty((d, n), dtype=p11.dtype), np.empty((d, n), dtype=p11.dtype)
+    systems, _, n, width = shaft.shape
+    half, p, m = width // 2, len(ports), coefficients.shape[1]
+    receptance = np.empty((2, m, systems, p, p + 2), dtype=np.complex128)
+    band, pivots = np.empty((n, 3 * half + 1), dtype=np.complex128), np.empty(n, dtype=np.int64)
+    y, z = np.empty(n, dtype=np.complex128), np.empty(n, dtype=np.complex128)
     for i in range(m):
-        c, change = coefficients[0, i], coefficients[1, i]
         for k in range(systems):
-            band.fill(0.0)
-            _set(band, p11[k], c, 1.0)
+            _set(band, shaft[k], coefficients[0, i])
             if not _factorise(band, pivots, half):
-                return u, v, i
-            _set(y, p21[k], c, 1.0)
-            for row in range(d):
-                _solve(band, pivots, half, y[row])
-            _set(z, p21[k], change, 0.0)
-            _subtract_bands(z, y, p11[k], change, half)
-            for row in range(d):
-                _solve(band, pivots, half, z[row])
-            _set(u[0, i, k], p22[k], c, 1.0)
-            _subtract_product(u[0, i, k], y, p12[k], c, 1.0)
-            _set(u[1, i, k], p22[k], change, 0.0)
-            _subtract_product(u[1, i, k], y, p12[k], change, 0.0)
-            _subtract_product(u[1, i, k], z, p12[k], c, 1.0)
-            for order in range(2):
-                for row in range(d):
-                    for force in range(2):
-                        v[order, i, k, row] += factors[order, i, force] * f2[k, force, row]
-                _subtract_force(v[order, i, k], y, f1[k], factors[order, i])
-            _subtract_force(v[1, i, k], z, f1[k], factors[0, i])
-    return u, v, -1
+                return receptance, i
+            for row in range(p):
+                y[:] = 0.0
+                y[ports[row]] = 1.0
+                _solve(band, pivots, half, y)
+                _pick(receptance[0, i, k, row], y, ports, forces[k])
+                _minus_product(z, y, shaft[k], coefficients[1, i], half)
+                _solve(band, pivots, half, z)
+                _pick(receptance[1, i, k, row], z, ports, forces[k])
+    return receptance, -1

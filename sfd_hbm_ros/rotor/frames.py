@@ -14,20 +14,29 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from sfd_hbm_ros.kernels import kernel
-from sfd_hbm_ros.rotor.arrays import ComplexArray, NumberArray, RealArray
+from sfd_hbm_ros.rotor.arrays import ComplexArray, IndexArray, NumberArray, SparseArray
 from sfd_hbm_ros.rotor.model import RotorModel
+
+
+class Entries(NamedTuple):
+    """Entries of a sparse matrix, (e,) each; those at the same place add up."""
+
+    row: IndexArray
+    column: IndexArray
+    value: NumberArray
 
 
 class Frame(Protocol):
     """A choice of coordinates in which P q = f falls into one or more systems."""
 
-    def systems(self, matrix: RealArray) -> ComplexArray:
-        """Return the systems' matrices (s, n, m) of a real matrix in x, y interleaved."""
+    def entries(self, matrix: SparseArray) -> tuple[Entries, ...]:
+        """Return the entries of the systems' matrices of a real one in x, y interleaved."""
 
     def split(self, vector: ComplexArray) -> ComplexArray:
         """Return the systems' vectors (..., s, n) of amplitudes in x, y interleaved."""
@@ -42,9 +51,10 @@ class Frame(Protocol):
 class Cartesian:
     """Coordinates x and y as they are, for any machine: one system."""
 
-    def systems(self, matrix: RealArray) -> ComplexArray:
+    def entries(self, matrix: SparseArray) -> tuple[Entries, ...]:
         """See `Frame`."""
-        return matrix[np.newaxis].astype(complex)
+        found = matrix.tocoo()
+        return (Entries(found.row, found.col, found.data),)
 
     def split(self, vector: ComplexArray) -> ComplexArray:
         """See `Frame`."""
@@ -62,10 +72,20 @@ class Cartesian:
 class Whirl:
     """Forward and backward circles of an axisymmetric machine: two systems."""
 
-    def systems(self, matrix: RealArray) -> ComplexArray:
+    def entries(self, matrix: SparseArray) -> tuple[Entries, ...]:
         """See `Frame`."""
-        forward = matrix[0::2, 0::2] - 1j * matrix[0::2, 1::2]
-        return np.stack([forward, forward.conj()])
+        found = matrix.tocoo()
+        in_x = found.row % 2 == 0
+        i, j, value = found.row[in_x], found.col[in_x], found.data[in_x]
+        forward = Entries(i // 2, j // 2, np.where(j % 2 == 0, value, -1j * value))
+        return forward, forward._replace(value=forward.value.conj())
+
+    def systems(self, matrix: SparseArray) -> tuple[SparseArray, SparseArray]:
+        """Return the matrices (n, m) of the forward and the backward circle."""
+        shape = matrix.shape[0] // 2, matrix.shape[1] // 2
+        forward, _ = self.entries(matrix)
+        whole = csr_array((forward.value, (forward.row, forward.column)), shape)
+        return whole, whole.conj()
 
     def split(self, vector: ComplexArray) -> ComplexArray:
         """See `Frame`."""
@@ -74,20 +94,20 @@ class Whirl:
 
     def join(self, vectors: NumberArray) -> ComplexArray:
         """See `Frame`."""
-        forward, backward = vectors[..., 0, :], vectors[..., 1, :]
-        x_y = np.stack([forward + backward, -1j * (forward - backward)], axis=-1)
-        return x_y.reshape(*x_y.shape[:-2], -1)
+        *outer, systems, n = vectors.shape
+        flat = np.ascontiguousarray(vectors, complex).reshape(math.prod(outer), systems, n)
+        return _joined(flat).reshape(*outer, 2 * n)
 
     def join_matrices(self, matrices: NumberArray) -> ComplexArray:
         """See `Frame`."""
         *outer, systems, n, _ = matrices.shape
-        flat = matrices.astype(complex, order="C").reshape(math.prod(outer), systems, n, n)
-        joined = _joined(flat)
+        flat = np.ascontiguousarray(matrices, complex).reshape(math.prod(outer), systems, n, n)
+        joined = _joined_matrices(flat)
         return joined.reshape(*outer, 2 * n, 2 * n)
 
 
 @kernel("complex128[:, :, ::1](complex128[:, :, :, ::1])")
-def _joined(systems: ComplexArray) -> ComplexArray:
+def _joined_matrices(systems: ComplexArray) -> ComplexArray:
     """Matrices (m, 2n, 2n) in x, y of those of forward and backward circles (m, 2, n, n)."""
     m, _, n, _ = systems.shape
     joined = np.empty((m, 2 * n, 2 * n), dtype=np.complex128)
@@ -101,19 +121,33 @@ def _joined(systems: ComplexArray) -> ComplexArray:
     return joined
 
 
+@kernel("complex128[:, ::1](complex128[:, :, ::1])")
+def _joined(systems: ComplexArray) -> ComplexArray:
+    """Amplitudes (m, 2n) of x, y of those of forward and backward circles (m, 2, n)."""
+    m, _, n = systems.shape
+    joined = np.empty((m, 2 * n), dtype=np.complex128)
+    for k in range(m):
+        for i in range(n):
+            forward, backward = systems[k, 0, i], systems[k, 1, i]
+            joined[k, 2 * i] = forward + backward
+            joined[k, 2 * i + 1] = -1j * (forward - backward)
+    return joined
+
+
 @lru_cache(maxsize=8)
 def is_axisymmetric(model: RotorModel) -> bool:
     """Tell whether every 2x2 block of a rotor's matrices is [[p, q], [-q, p]].
 
     The answer is kept, as the same rotor is asked about at every speed.
     """
-    return all(
-        _alike(matrix[0::2, 0::2], matrix[1::2, 1::2], matrix)
-        and _alike(matrix[0::2, 1::2], -matrix[1::2, 0::2], matrix)
-        for matrix in (model.M, model.C, model.G, model.K)
-    )
+    return model.size % 2 == 0 and all(_commutes_with_turns(part) for part in model.matrices)
 
 
-def _alike(one: RealArray, other: RealArray, whole: RealArray) -> bool:
-    """Tell whether two parts of a matrix differ by no more than rounding."""
-    return bool(np.abs(one - other).max(initial=0.0) <= 1e-14 * np.abs(whole).max(initial=0.0))
+def _commutes_with_turns(matrix: SparseArray) -> bool:
+    """Tell whether a matrix is the same, but for rounding, where y is x and -x is y."""
+    found = matrix.tocoo()
+    i, j, value = found.row, found.col, found.data
+    turned = np.where((i + j) % 2 == 0, -value, value)
+    places = np.concatenate([i, i ^ 1]), np.concatenate([j, j ^ 1])
+    change = csr_array((np.concatenate([value, turned]), places), matrix.shape)
+    return bool(np.abs(change.data).max(initial=0.0) <= 1e-14 * np.abs(value).max(initial=0.0))

@@ -5,11 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sfd_hbm_ros.rotor.arrays import ComplexArray, IndexArray, RealArray
+from sfd_hbm_ros.rotor.arrays import ComplexArray, IndexArray, RealArray, SparseArray
+from sfd_hbm_ros.rotor.factors import force_factors
+
+
+class Matrices(NamedTuple):
+    """The rotor's matrices (N, N), sparse: every element couples two neighbours alone."""
+
+    M: SparseArray
+    C: SparseArray
+    G: SparseArray
+    K: SparseArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +32,7 @@ class RotorModel:
 
     Parameters
     ----------
-    M, C, G, K : (N, N) array
+    matrices : Matrices
         Mass, damping, gyroscopic matrix for unit speed, and stiffness, in SI units.
     journals : (dampers, 2) array of int
         Coordinates (x, y) of each damper's journal, in the machine's order.
@@ -33,19 +44,36 @@ class RotorModel:
         Loads, and the weight if the machine has it [N].
     """
 
-    M: RealArray
-    C: RealArray
-    G: RealArray
-    K: RealArray
+    matrices: Matrices
     journals: IndexArray
     stations: Mapping[str, IndexArray]
     unbalance: ComplexArray
     static_force: RealArray
 
+    @cached_property
+    def M(self) -> RealArray:
+        """Mass as a full array, (N, N), as are C, G and K: for rotors of few coordinates."""
+        return _full(self.matrices.M)
+
+    @cached_property
+    def C(self) -> RealArray:
+        """Damping, (N, N)."""
+        return _full(self.matrices.C)
+
+    @cached_property
+    def G(self) -> RealArray:
+        """Gyroscopic matrix for unit speed, (N, N)."""
+        return _full(self.matrices.G)
+
+    @cached_property
+    def K(self) -> RealArray:
+        """Stiffness, (N, N)."""
+        return _full(self.matrices.K)
+
     @property
     def size(self) -> int:
         """Number N of all coordinates."""
-        return len(self.M)
+        return len(self.static_force)
 
     @property
     def shaft_size(self) -> int:
@@ -68,22 +96,16 @@ class RotorModel:
             F in f(t) = Re(F exp(i order speed t)) [N, N m].
         """
         forces = np.stack([self.static_force, self.unbalance])
-        return np.asarray(force_factors(speed, np.asarray(orders, dtype=float)) @ forces)
+        return np.asarray(force_factors(speed, np.array(orders, dtype=float), 1.0)[0] @ forces)
 
     def load(self, speed: float, orders: RealArray) -> float:
         """Return the norm of `linear_force` [N]; parameters are those of it."""
-        return float(np.linalg.norm(force_factors(speed, orders) * self._force_norms))
+        return float(np.linalg.norm(force_factors(speed, orders, 1.0)[0] * self._force_norms))
 
     @cached_property
     def _force_norms(self) -> RealArray:
         return np.asarray(np.linalg.norm([self.static_force, self.unbalance], axis=1))
 
 
-def force_factors(speed: float, orders: RealArray) -> RealArray:
-    """Return the factors (m, 2) of a rotor's static force and unbalance in each harmonic."""
-    return np.array([orders == 0.0, (orders == 1.0) * speed**2], dtype=float).T
-
-
-def force_factor_slopes(speed: float, orders: RealArray) -> RealArray:
-    """Return the derivatives of `force_factors` by the speed."""
-    return np.array([np.zeros_like(orders), (orders == 1.0) * 2.0 * speed], dtype=float).T
+def _full(matrix: SparseArray) -> RealArray:
+    return np.asarray(matrix.toarray())

@@ -9,12 +9,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eig, eigvals
+from scipy.sparse.linalg import LinearOperator, splu
 
-from sfd_hbm_ros.rotor.arrays import NumberArray
+from sfd_hbm_ros.rotor.arrays import NumberArray, SparseArray
 from sfd_hbm_ros.rotor.directions import Direction, direction, senses
 from sfd_hbm_ros.rotor.frames import Whirl, is_axisymmetric
 from sfd_hbm_ros.rotor.model import RotorModel
+from sfd_hbm_ros.rotor.spectrum import largest_eigenpairs, largest_eigenvalues
 
 SHIFT = 1.0
 """Eigenvalues are sought by the reciprocal of their distance from here [rad/s]: the low ones then
@@ -22,6 +23,9 @@ come out to full precision, and rigid motions that nothing holds come out as zer
 
 HELD = 1e-3
 """Below this frequency a motion counts as rigid and held by nothing [rad/s]."""
+
+MOST = 40
+"""Number of whirl modes that are found of a large rotor."""
 
 
 @dataclass(frozen=True)
@@ -58,19 +62,20 @@ def whirl_modes(model: RotorModel, speed: float) -> list[WhirlMode]:
     Returns
     -------
     list of WhirlMode
-        The modes, at most as many as the rotor has coordinates.
+        All modes of a rotor of some hundred coordinates; the lowest `MOST` of a larger one.
     """
-    damping = model.C + speed * model.G
+    M, C, G, K = model.matrices
+    damping = C + speed * G
     if is_axisymmetric(model):
         # exp(s t) in x + i y runs forward if Im s > 0, and backward if Im s < 0.
-        M, D, K = (Whirl().systems(matrix)[0] for matrix in (model.M, damping, model.K))
-        eigenvalues = SHIFT + 1.0 / eigvals(_companion(M, D, K))
+        forward = [Whirl().systems(matrix)[0] for matrix in (M, damping, K)]
+        eigenvalues = SHIFT + 1.0 / largest_eigenvalues(_companion(*forward), MOST)
         sense = np.sign(eigenvalues.imag)
     else:
-        reciprocals, vectors = eig(_companion(model.M, damping, model.K))
+        reciprocals, vectors = largest_eigenpairs(_companion(M, damping, K), 2 * MOST)
         upper = reciprocals.imag < 0.0
         eigenvalues = SHIFT + 1.0 / reciprocals[upper]
-        sense = senses(model.M, vectors[model.size :, upper])
+        sense = senses(M, vectors[model.size :, upper])
     frequencies = np.abs(eigenvalues.imag)
     # Rounding gives an overdamped motion a frequency of its own.
     oscillates = (frequencies > HELD) & (frequencies > 1e-6 * np.abs(eigenvalues))
@@ -99,9 +104,14 @@ def campbell(model: RotorModel, speeds: Iterable[float]) -> list[list[WhirlMode]
     return [whirl_modes(model, speed) for speed in speeds]
 
 
-def _companion(M: NumberArray, D: NumberArray, K: NumberArray) -> NumberArray:
+def _companion(M: SparseArray, D: SparseArray, K: SparseArray) -> LinearOperator:
     """Return the matrix with the eigenpairs 1/(s - SHIFT) and (., q), (s^2 M + s D + K) q = 0."""
-    n = len(M)
-    shifted = K + SHIFT * D + SHIFT**2 * M
-    solved = np.linalg.solve(shifted, np.hstack([D + 2.0 * SHIFT * M, M]))
-    return np.vstack([-solved, np.eye(n, 2 * n)])
+    n = M.shape[0]
+    factors = splu((K + SHIFT * D + SHIFT**2 * M).tocsc())
+    upper = D + 2.0 * SHIFT * M
+
+    def product(vectors: NumberArray) -> NumberArray:
+        first, second = vectors[:n], vectors[n:]
+        return np.concatenate([-factors.solve(upper @ first + M @ second), first])
+
+    return LinearOperator((2 * n, 2 * n), product, matmat=product, dtype=D.dtype)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import eigh
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import splu
 
-from sfd_hbm_ros.rotor.arrays import RealArray
-from sfd_hbm_ros.rotor.frames import is_axisymmetric
-from sfd_hbm_ros.rotor.model import RotorModel
+from sfd_hbm_ros.rotor.arrays import NumberArray, RealArray, SparseArray
+from sfd_hbm_ros.rotor.frames import Whirl, is_axisymmetric
+from sfd_hbm_ros.rotor.model import Matrices, RotorModel
+from sfd_hbm_ros.rotor.spectrum import lowest_modes
 
 
 def reduce_model(model: RotorModel, highest_frequency: float) -> RotorModel:
@@ -45,10 +47,7 @@ def _reduced(model: RotorModel, ceiling: float, modes: int) -> RotorModel:
     frequencies, whole = _basis(model, ceiling)
     basis = np.delete(whole, np.s_[modes : len(frequencies)], axis=1)
     return RotorModel(
-        M=basis.T @ model.M @ basis,
-        C=basis.T @ model.C @ basis,
-        G=basis.T @ model.G @ basis,
-        K=basis.T @ model.K @ basis,
+        matrices=Matrices(*(csr_array(basis.T @ (part @ basis)) for part in model.matrices)),
         journals=modes + np.arange(model.journals.size).reshape(-1, 2),
         stations={},
         unbalance=basis.T @ model.unbalance,
@@ -63,10 +62,7 @@ def hold_journals(model: RotorModel) -> RotorModel:
     """
     n = model.shaft_size
     return RotorModel(
-        M=model.M[:n, :n],
-        C=model.C[:n, :n],
-        G=model.G[:n, :n],
-        K=model.K[:n, :n],
+        matrices=Matrices(*(matrix[:n, :n] for matrix in model.matrices)),
         journals=model.journals[:0],
         stations=model.stations,
         unbalance=model.unbalance[:n],
@@ -86,20 +82,25 @@ def _basis(model: RotorModel, highest_frequency: float) -> tuple[RealArray, Real
     The modes' frequencies (m,) [rad/s], and all columns (N, m + n).
     """
     n, journals = model.shaft_size, model.journals.size
+    M, K, ties = model.matrices.M[:n, :n], model.matrices.K[:n, :n], model.matrices.K[:n, n:]
+    symmetric = 0.5 * (K + K.T)  # what is skew in a bearing does not shape the modes
     if is_axisymmetric(model):
-        planar, modes = _modes(model.K[:n:2, :n:2], model.M[:n:2, :n:2], highest_frequency)
-        frequencies, modes = np.repeat(planar, 2), np.kron(modes, np.eye(2)).astype(float)
+        planar, modes = lowest_modes(symmetric[::2, ::2], M[::2, ::2], highest_frequency)
+        frequencies, modes = np.repeat(planar, 2), _in_both_planes(modes)
+        pulled = _in_both_planes(_solved(Whirl().systems(K)[0], Whirl().systems(ties)[0]))
     else:
-        frequencies, modes = _modes(model.K[:n, :n], model.M[:n, :n], highest_frequency)
-    deflections = -np.linalg.solve(model.K[:n, :n], model.K[:n, n:])
+        frequencies, modes = lowest_modes(symmetric, M, highest_frequency)
+        pulled = _solved(K, ties).real
     fixed = np.zeros((journals, modes.shape[1]))
-    return frequencies, np.block([[modes, deflections], [fixed, np.eye(journals)]])
+    return frequencies, np.block([[modes, -pulled], [fixed, np.eye(journals)]])
 
 
-def _modes(
-    stiffness: RealArray, mass: RealArray, highest_frequency: float
-) -> tuple[RealArray, RealArray]:
-    """Frequencies and columns of the modes; what is skew in a bearing does not shape them."""
-    symmetric = 0.5 * (stiffness + stiffness.T)
-    squares, modes = eigh(symmetric, mass, subset_by_value=(-np.inf, highest_frequency**2))
-    return np.sqrt(np.maximum(squares, 0.0)), np.asarray(modes)
+def _solved(matrix: SparseArray, columns: SparseArray) -> NumberArray:
+    """Return inv(A) B."""
+    return np.asarray(splu(matrix.tocsc()).solve(columns.toarray()))
+
+
+def _in_both_planes(forward: NumberArray) -> RealArray:
+    """Return the matrix of blocks [[p, q], [-q, p]] whose forward whirl has p - i q."""
+    turning = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    return np.asarray(np.kron(forward.real, np.eye(2)) - np.kron(forward.imag, turning), float)

@@ -1,6 +1,7 @@
 """The way from one machine and speed to another, on which the machine changes in proportion."""
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -10,10 +11,9 @@ from sfd_hbm_ros.hbm import Equations, HarmonicBalance
 from sfd_hbm_ros.hbm.family import FamilyMember
 from sfd_hbm_ros.machine import Damper
 from sfd_hbm_ros.rotor import RotorModel
+from sfd_hbm_ros.rotor.model import Matrices
 
 Array = NDArray[np.float64]
-
-_STEP = 1e-4  # part of the way over which equations are differenced
 
 
 @dataclass(frozen=True)
@@ -48,22 +48,31 @@ class Way:
         return self._balance(part).at(self.end_speed if part == 1.0 else speed)
 
     def slope(self, equations: FamilyMember, value: float, x: Array) -> Array:
-        """See `Family`; where the machine changes, by differences of the residual."""
-        if self.start is self.end:
-            return (self.end_speed - self.start_speed) * equations.slope_by_speed(x)
-        after, before = (self.at(value + step).residual(x) for step in (_STEP, -_STEP))
-        slope: Array = (after - before) / (2.0 * _STEP)
+        """See `Family`; as if the residual changed in proportion with the machine.
+
+        It does for forces, and nearly so for a film's viscosity. Points of a branch are solutions
+        all the same, and its folds are where they are: there the Jacobian is singular.
+        """
+        slope = (self.end_speed - self.start_speed) * equations.slope_by_speed(x)
+        if self._changes:
+            before, after = (one.at(equations.speed) for one in (self.start, self.end))
+            slope += after.residual(x) - before.residual(x)
         return slope
 
-    def _balance(self, part: float) -> HarmonicBalance:
-        """The machine at a part of the way; the last one where the two cannot be compared."""
+    @cached_property
+    def _changes(self) -> bool:
+        """Whether the machine changes; one that cannot be compared is the last all the way."""
         start, end = self.start, self.end
-        comparable = (start.model.size, start.clearances.size) == (
-            end.model.size,
-            end.clearances.size,
-        )
-        if part == 1.0 or start is end or not comparable:
+        sizes = [(one.model.size, one.clearances.size) for one in (start, end)]
+        return start is not end and sizes[0] == sizes[1]
+
+    def _balance(self, part: float) -> HarmonicBalance:
+        """The machine at a part of the way."""
+        start, end = self.start, self.end
+        if part == 1.0 or not self._changes:
             return end
+        if part == 0.0:
+            return start
         dampers = tuple(
             _damper(*pair, part)
             for pair in zip(start.machine.dampers, end.machine.dampers, strict=True)
@@ -84,6 +93,9 @@ def _damper(start: Damper, end: Damper, part: float) -> Damper:
 
 def _model(start: RotorModel, end: RotorModel, part: float) -> RotorModel:
     """A rotor between two others."""
-    names = ("M", "C", "G", "K", "unbalance", "static_force")
-    pairs = {name: (getattr(start, name), getattr(end, name)) for name in names}
-    return replace(end, **{name: a + part * (b - a) for name, (a, b) in pairs.items()})
+    pairs = zip(start.matrices, end.matrices, strict=True)
+    forces = {
+        name: getattr(start, name) + part * (getattr(end, name) - getattr(start, name))
+        for name in ("unbalance", "static_force")
+    }
+    return replace(end, matrices=Matrices(*(a + part * (b - a) for a, b in pairs)), **forces)
