@@ -7,21 +7,21 @@ input; 1 with one sentence where no solution was found; 130 where the user has i
 import argparse
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from typing import NoReturn
 
-from sfd_hbm_ros.commands import modes, paper, simulate, solve, study, sweep
-from sfd_hbm_ros.machine import MachineError
-from sfd_hbm_ros.response.curves.curve import NoSolutionError
-from sfd_hbm_ros.study.results import IncompleteError
+from sfd_hbm_ros.response.errors import NoSolutionError
+from sfd_hbm_ros.study.errors import IncompleteError
 
 VERBS = {
-    "solve": solve,
-    "sweep": sweep,
-    "study": study,
-    "simulate": simulate,
-    "modes": modes,
-    "paper": paper,
+    "solve": "The response at one speed: eccentricity and harmonics of every damper.",
+    "sweep": "The response over a range of speeds, or of any entry of the machine file at one.",
+    "study": "Response curves of many variants of a machine: grids and Monte Carlo.",
+    "simulate": "A run-up or coast-down in time, which shows by itself where the machine jumps.",
+    "modes": "Critical speeds, or whirl modes at one speed, of the rotor without its films.",
+    "paper": "The reference paper: its figures computed again, and its claims judged.",
 }
+"""What each verb does; its module in `commands` is imported when it is asked for."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -33,20 +33,23 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb and return the exit status."""
+    given = sys.argv[1:] if arguments is None else arguments
     parser = _Parser(
         prog="sfd_hbm", description="Rotors on squeeze film dampers by harmonic balance."
     )
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
-    for name, verb in VERBS.items():
-        summary = (verb.__doc__ or "").splitlines()[0]
+    for name, summary in VERBS.items():
         options = verbs.add_parser(name, help=summary, description=summary)
-        verb.add_options(options)
-    chosen = parser.parse_args(arguments)
+        if name in given:
+            verb = import_module(f"sfd_hbm_ros.commands.{name}")
+            verb.add_options(options)
+            options.set_defaults(run=verb.run)
+    chosen = parser.parse_args(given)
     try:
-        VERBS[chosen.verb].run(chosen)
+        chosen.run(chosen)
     except BrokenPipeError:  # the reader of a pipe has seen enough
         sys.stderr.close()
-    except (MachineError, ValueError, OSError, ModuleNotFoundError) as error:
+    except (ValueError, OSError, ModuleNotFoundError) as error:
         return _refuse(parser.prog, error, 2)
     except (NoSolutionError, IncompleteError) as error:
         return _refuse(parser.prog, error, 1)

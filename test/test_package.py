@@ -16,6 +16,8 @@ ROOT = Path(__file__).parents[1]
 MANIFEST = ET.parse(ROOT / "package.xml").getroot()
 KEYED = ("matplotlib", "numba", "numpy", "scipy", "yaml")
 ROSDEP_KEYS = {name: f"python3-{name}" for name in KEYED}
+PAPER = str(ROOT / "config" / "paper_rotor.yaml")
+HEAVY = ("matplotlib", "scipy.optimize", "scipy.interpolate", "scipy.sparse", "dask", "pyarrow")
 ROS_MODULE = re.compile(r"rclpy|rcl_interfaces|ament_index_python|launch\w*|\w+_(msgs|srvs)")
 
 
@@ -82,6 +84,36 @@ def test_all_but_node_works_without_ros() -> None:
     """
     done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "absent"),
+    [
+        (["--help"], (*HEAVY, "numpy", "yaml")),
+        (["modes", PAPER], (*HEAVY, "numba")),
+        (["solve", PAPER, "--rpm", "3000"], HEAVY),
+        (["sweep", PAPER, "--rpm", "3000:3100"], HEAVY),
+    ],
+)
+def test_verb_imports_only_what_it_needs(arguments: list[str], absent: tuple[str, ...]) -> None:
+    assert imported_by(f"from sfd_hbm_ros.cli import main; main({arguments})", absent) == set()
+
+
+@pytest.mark.parametrize("module", ["predictor", "worker.process"])
+def test_node_imports_only_what_it_needs(module: str) -> None:
+    """A node that takes no more memory than it must runs on a small computer."""
+    if module == "predictor":
+        pytest.importorskip("rclpy")
+    assert imported_by(f"import sfd_hbm_ros.node.{module}", (*HEAVY, "numba")) == set()
+
+
+def imported_by(script: str, modules: tuple[str, ...]) -> set[str]:
+    """Which of some modules a process has imported by the end of a script."""
+    told = f"print(*(name for name in {modules} if name in sys.modules), file=sys.stderr)"
+    script = f"import atexit, sys; atexit.register(lambda: {told}); {script}"
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return set(done.stderr.split())
 
 
 @pytest.mark.parametrize("folder", ["config", "launch", "sros2"])

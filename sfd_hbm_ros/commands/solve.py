@@ -13,7 +13,7 @@ from sfd_hbm_ros.commands.arguments import (
     speed_from,
 )
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion, Solution, solve, stability
-from sfd_hbm_ros.response.curves.curve import NoSolutionError
+from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.units import RPM
 
 

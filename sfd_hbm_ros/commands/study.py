@@ -23,7 +23,7 @@ from sfd_hbm_ros.commands.variations import grid_from, scatter_from
 from sfd_hbm_ros.hbm import Harmonics
 from sfd_hbm_ros.machine import Machine, machine_to_dict
 from sfd_hbm_ros.report.study_table import study_writer
-from sfd_hbm_ros.response.curves.curve import NoSolutionError
+from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.study.cluster import on_cluster
 from sfd_hbm_ros.study.complete import Computer, complete
 from sfd_hbm_ros.study.design import Design, check_variants

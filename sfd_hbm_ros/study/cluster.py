@@ -4,8 +4,8 @@ import importlib
 from collections.abc import Iterator
 from typing import Any
 
+from sfd_hbm_ros.study.errors import IncompleteError
 from sfd_hbm_ros.study.processes import Variants
-from sfd_hbm_ros.study.results import IncompleteError
 from sfd_hbm_ros.study.task import Outcome, Task
 
 _LINE = "\n"  # Dask's errors go on for several

@@ -3,9 +3,10 @@
 from collections.abc import Callable, Iterator
 
 from sfd_hbm_ros.study.design import Design
+from sfd_hbm_ros.study.errors import IncompleteError
 from sfd_hbm_ros.study.journal import Journal
 from sfd_hbm_ros.study.processes import Variants
-from sfd_hbm_ros.study.results import IncompleteError, Results
+from sfd_hbm_ros.study.results import Results
 from sfd_hbm_ros.study.task import Outcome
 
 Computer = Callable[[Variants], Iterator[tuple[int, Outcome]]]

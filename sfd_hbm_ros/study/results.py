@@ -13,10 +13,6 @@ from sfd_hbm_ros.study.task import Outcome
 Array = NDArray[np.float64]
 
 
-class IncompleteError(RuntimeError):
-    """Variants are left without an outcome, as the processes that computed them were lost."""
-
-
 @dataclass(frozen=True, eq=False)
 class Results:
     """The outcomes of a study.

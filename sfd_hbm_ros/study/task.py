@@ -9,9 +9,10 @@ import numpy as np
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.machine import Machine, override_all
-from sfd_hbm_ros.response.curves.curve import NoSolutionError, ResponseCurve, response_curve
+from sfd_hbm_ros.response.curves.curve import ResponseCurve, response_curve
 from sfd_hbm_ros.response.curves.jumps import Direction
 from sfd_hbm_ros.response.curves.summary import Summary
+from sfd_hbm_ros.response.errors import NoSolutionError
 
 
 @dataclass(frozen=True)

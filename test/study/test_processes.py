@@ -7,9 +7,9 @@ import pytest
 
 from sfd_hbm_ros.study.complete import complete
 from sfd_hbm_ros.study.design import Design
+from sfd_hbm_ros.study.errors import IncompleteError
 from sfd_hbm_ros.study.journal import Journal
 from sfd_hbm_ros.study.processes import on_processes
-from sfd_hbm_ros.study.results import IncompleteError
 from sfd_hbm_ros.study.task import Outcome
 
 

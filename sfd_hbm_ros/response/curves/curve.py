@@ -16,13 +16,10 @@ from sfd_hbm_ros.hbm.selected_branch import SelectedBranch
 from sfd_hbm_ros.hbm.selection import SelectedBalance
 from sfd_hbm_ros.response.curves.forks import Fork, leaving_branches
 from sfd_hbm_ros.response.curves.judged import CurveBranch, Progress, judged
+from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
-
-
-class NoSolutionError(RuntimeError):
-    """The machine has no solution where one was asked for, or none was found."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm import HarmonicBalance, solve
-from sfd_hbm_ros.response.curves.curve import NoSolutionError
+from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.response.integration.integrator import ClearanceError, Integrator, State
 from sfd_hbm_ros.response.integration.options import DEFAULTS, IntegrationOptions
 from sfd_hbm_ros.response.integration.ramp import Ramp

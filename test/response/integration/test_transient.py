@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.machine import FilmSettings, override, override_all
-from sfd_hbm_ros.response.curves.curve import NoSolutionError
+from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.response.integration.integrator import Integrator, State
 from sfd_hbm_ros.response.integration.options import IntegrationOptions
 from sfd_hbm_ros.response.integration.ramp import Ramp
