@@ -1,5 +1,6 @@
 """What a harmonic balance solve hands on: the motion of each damper's journal."""
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -66,19 +67,25 @@ class JournalMotion:
     @cached_property
     def eccentricity_max(self) -> float:
         """Greatest eccentricity sqrt(x^2 + y^2)/c of the orbit (Eq. 15)."""
-        squares = (self._samples**2).sum(axis=1)
-        angle = self.harmonics.angles(len(squares))
+        squares = np.square(self._samples).sum(axis=1)
         best = int(np.argmax(squares))
-        refined = angle[best : best + 1]
+        spacing = 2.0 * np.pi * self.harmonics.revolutions / len(squares)
+        orders, amplitudes = self.harmonics.orders, self.harmonics.amplitudes(self.coefficients)
+        w = 1j * orders
+        rates = np.stack([amplitudes, w[:, None] * amplitudes, (w * w)[:, None] * amplitudes], 1)
+        angle, farthest = best * spacing, float(squares[best])
         for _ in range(4):  # Newton's method on the derivative of the squared distance
-            position, velocity, curvature = (self.at(refined, order) for order in (0, 1, 2))
-            slope = (position * velocity).sum()
-            bend = (velocity**2 + position * curvature).sum()
+            turned = np.exp(w * angle) @ rates.reshape(len(orders), -1)
+            x, y, x1, y1, x2, y2 = turned.real.tolist()
+            farthest = max(farthest, x * x + y * y)
+            bend = x1 * x1 + y1 * y1 + x * x2 + y * y2
             if bend >= 0.0:  # a circle about the centre has no maximum to refine
                 break
-            refined = refined - np.clip(slope / bend, -angle[1], angle[1])
-        farthest = max(squares[best], (self.at(refined) ** 2).sum())
-        return float(np.sqrt(farthest)) / self.clearance
+            move = min(max((x * x1 + y * y1) / bend, -spacing), spacing)
+            angle -= move
+            if abs(move) < 1e-6 * spacing:  # below the rounding of the maximum
+                break
+        return math.sqrt(farthest) / self.clearance
 
     @cached_property
     def eccentricity_mean(self) -> float:

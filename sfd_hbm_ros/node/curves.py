@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 
 from rclpy.clock import Clock
@@ -21,12 +22,13 @@ from sfd_hbm_ros.node.worker.curve_job import CurveJob, CurveResult
 from sfd_hbm_ros.node.worker.likeness import alike
 from sfd_hbm_ros.node.worker.renewal import Renewal
 from sfd_hbm_ros.node.worker.worker import Patience, Worker
+from sfd_hbm_ros.response.curves.judged import CurveBranch
 from sfd_hbm_ros.response.warning.jump_map import JumpMap, jump_map
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """Reliable, and the last message is there for whoever comes later."""
 
-_POLL = 0.05  # s between two looks at the worker process
+_POLL = 0.1  # s between two looks at the worker process
 
 
 class Curves:
@@ -92,7 +94,7 @@ class Curves:
             self._outdated_since = now
         self._wanted = job
         self._judge()
-        self._renewal.change(now)
+        self._renewal.change(now, first=self.result is None and self.worker.job is None)
 
     def added_to(self, status: Status) -> Status:
         """Return the status of the model with how its response curve fares."""
@@ -105,8 +107,13 @@ class Curves:
         return replace(status, message=message, values=values)
 
     def release(self) -> None:
-        """Forget the curve, and end the worker process until there is another machine."""
+        """Forget the curve, and end the worker process until there is another machine.
+
+        Who comes later is to see no curve of a machine that is not there any more.
+        """
         self.worker.close()
+        if self.result is not None:
+            self._publish((), ())
         self.result = self._jumps = self._wanted = None
         self.usable = False
         self._renewal = Renewal()
@@ -160,9 +167,12 @@ class Curves:
         assert model is not None
         model.balance()
         model.tracker.adopt(curve)
-        now = self._node.get_clock().now()
-        self._publisher.publish(response_curve_message(now, result.curve.branches, detached))
+        self._publish(result.curve.branches, detached)
         self._operation.predict_again()
+
+    def _publish(self, branches: Sequence[CurveBranch], detached: Sequence[CurveBranch]) -> None:
+        now = self._node.get_clock().now()
+        self._publisher.publish(response_curve_message(now, branches, detached))
 
     def _judge(self) -> None:
         """Find out whether the curve tells of the machine as it is now."""

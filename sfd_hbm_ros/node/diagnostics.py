@@ -93,7 +93,7 @@ def inputs_status(
     others : iterable of Drops
         All other inputs.
     stale_after : float
-        Age from which the speed is stale [s].
+        Age from which the speed is stale [s]; one whose stamp lags as much is warned of.
     now : float
         Time by the inputs' steady clock [s].
     """
@@ -119,6 +119,9 @@ def _speed_level(
     if age > stale_after:
         stale = f"{speed.source} is stale, its last message came {age:.1f} s ago"
         return Level.ERROR, f"{stale}: nothing is predicted"
+    if speed.lag > stale_after:
+        late = f"{speed.source} arrives late, its last stamp was {speed.lag:.1f} s old"
+        return Level.WARN, f"{late}: the predictions are of that time"
     return Level.OK, f"{speed.source} arrives"
 
 

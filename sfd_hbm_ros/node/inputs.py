@@ -107,10 +107,13 @@ class Feed(Drops, Generic[T]):
         The last value accepted.
     accepted : int
         How many were accepted.
+    lag : float
+        How far the stamp of the last lay behind the node's clock on arrival [s].
     """
 
     value: T | None = None
     accepted: int = 0
+    lag: float = 0.0
     _accepted_at: float = -math.inf
     _orders: dict[str, Order] = field(default_factory=dict)
 
@@ -136,6 +139,7 @@ class Feed(Drops, Generic[T]):
         stamp = self._orders.setdefault(stream, Order()).check(stamp, clock)
         self.value = value
         self.accepted += 1
+        self.lag = (clock - stamp) * _NANO
         self._accepted_at = now
         return stamp
 

@@ -8,6 +8,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
 
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.lifecycle import LifecycleNode
 
 from sfd_hbm_ros.node.diagnostics import Status
@@ -24,7 +26,7 @@ _PERIOD = 1.0  # s between two savings without a change worth more
 
 
 class Memory:
-    """Saves and restores the branch that the machine is on, and its alarm.
+    """Saves and restores the branch that the machine is on, its loads and its alarm.
 
     A disk may be slow, so a thread writes; the newest state waits where it is still at the last.
 
@@ -57,6 +59,8 @@ class Memory:
         self._writing: Future[None] | None = None
         operation.after_prediction.append(self._take)
         watch.after_change.append(self._look)
+        # for what changed while a write was under way, when no speed comes after it
+        node.create_timer(_PERIOD, self._catch_up, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def restore(self, model: Model) -> None:
         """Begin with what is in the state file; one that is of no use is reported."""
@@ -99,6 +103,8 @@ class Memory:
         """Go on from a state."""
         watch = self._watch
         watch.alarm = JumpAlarm.from_dict(watch.alarm.settings, state.alarm, time.monotonic())
+        for load in [model.checked_load(*given) for given in state.loads.items()]:
+            self._operation.add(load)
         if not state.settled:
             return
         restored = restore(state, model.balance())
@@ -117,7 +123,7 @@ class Memory:
     def _take(self, prediction: Prediction, stamp: int) -> None:
         """Remember a prediction, and save it if it is time."""
         model = self._operation.model
-        if model is None or prediction.tracked is None:
+        if not self._path or model is None or prediction.tracked is None:
             return
         solution = prediction.tracked.solution
         self._state = State(
@@ -127,6 +133,7 @@ class Memory:
             model.tracker.settled,
             stamp,
             {},  # the alarm's, when it is saved
+            model.loads,
         )
         self._look()
 
@@ -136,6 +143,12 @@ class Memory:
         if self._writing is not None:
             return
         if self._key != self._saved or time.monotonic() - self._saved_at >= _PERIOD:
+            self._write()
+
+    def _catch_up(self) -> None:
+        """Save the state if something important has changed."""
+        self._collect()
+        if self._writing is None and self._key != self._saved:
             self._write()
 
     @property

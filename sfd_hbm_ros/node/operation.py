@@ -13,7 +13,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
-from sfd_hbm_ros.machine import Machine
+from sfd_hbm_ros.machine import Load, Machine
 from sfd_hbm_ros.node.dropping import dropping
 from sfd_hbm_ros.node.inputs import Feed, InputError, Pending
 from sfd_hbm_ros.node.messages import common as messages
@@ -106,6 +106,12 @@ class Operation:
         self._changed()
         self.predict_again()
 
+    def add(self, load: Load) -> None:
+        """Let a load of the machine act, in place of any other at its station."""
+        assert self.model is not None
+        if self.model.add(load):
+            self._changed()
+
     def stop(self) -> None:
         """Predict no more, and wait for another speed at the next start.
 
@@ -151,8 +157,7 @@ class Operation:
             stamp = self.load.accept(
                 load.force, stamp, self._clock(), time.monotonic(), stream=load.station
             )
-            if self.model.add(load):
-                self._changed()
+            self.add(load)
             self._request(stamp)
 
     def _changed(self) -> None:

@@ -84,6 +84,11 @@ class Model:
         self.tracker = Tracker(self._build())
 
     @property
+    def loads(self) -> dict[str, tuple[float, float]]:
+        """The forces that arrived [N], by their stations."""
+        return {station: load.force for station, load in self._loads.items()}
+
+    @property
     def loaded(self) -> Machine:
         """The machine with all loads that act on it."""
         return _loaded(self.machine, self._loads)
@@ -91,7 +96,8 @@ class Model:
     def change(self, machine: Machine, highest: int) -> None:
         """Go on with other values of the same machine and other harmonics."""
         self.machine = machine
-        self.harmonics = Harmonics(highest)
+        if highest != self.harmonics.highest:  # which keep what they have computed
+            self.harmonics = Harmonics(highest)
         self._balance = None
 
     def checked_load(self, station: str, force: tuple[float, float]) -> Load:

@@ -7,13 +7,16 @@ import time
 from pathlib import Path
 
 from rcl_interfaces.msg import SetParametersResult
-from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 
-from sfd_hbm_ros.machine import MachineError, override_all, read_machine
+from sfd_hbm_ros.kernels import load_kernels
+from sfd_hbm_ros.machine import read_machine
 from sfd_hbm_ros.node import diagnostics, guard
+from sfd_hbm_ros.node.changes import Changes
 from sfd_hbm_ros.node.curves import Curves
 from sfd_hbm_ros.node.inputs import Drops
+from sfd_hbm_ros.node.lean_node import LeanNode, spare_what_is_loaded
 from sfd_hbm_ros.node.measurement import Measurement
 from sfd_hbm_ros.node.memory import Memory
 from sfd_hbm_ros.node.oil_feed import OilFeed
@@ -30,10 +33,9 @@ from sfd_hbm_ros.node.worker.status import with_worker
 
 _SUCCESS = TransitionCallbackReturn.SUCCESS
 _LOG_PAUSE = 5.0  # s between two log messages about exceptions
-_SETTLED = ("machine_file", "state_file")  # parameters that stay while there is a machine
 
 
-class Predictor(LifecycleNode):
+class Predictor(LeanNode):
     """Predicts how the journals move at the speed and under the loads that arrive.
 
     The README has its topics, config/predictor.yaml its parameters.
@@ -46,11 +48,10 @@ class Predictor(LifecycleNode):
         self._exceptions = Drops("requests")
         # not _parameters, which rclpy's Node has of its own
         self._known = Parameters(self)
-        self.add_on_set_parameters_callback(self._check)
-        self.add_post_set_parameters_callback(self._apply)
         self._operation = Operation(self, self._known)
         self._curves = Curves(self, self._known, self._operation)
         self._watch = Watch(self, self._operation, self._curves, self._hardware)
+        Changes(self, self._known, self._operation, self._curves, self._watch)
         self._memory = Memory(self, self._known, self._operation, self._watch)
         Orbits(self, self._operation)
         self._what_if = WhatIf(self, self._known, self._operation, self._curves)
@@ -121,7 +122,7 @@ class Predictor(LifecycleNode):
     def close(self) -> None:
         """Save what is to outlive the process, and end the worker process."""
         self._memory.release()
-        self._curves.release()
+        self._curves.worker.close()
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters together, or none for a reason; both parameter services end here."""
@@ -130,28 +131,6 @@ class Predictor(LifecycleNode):
         except ParameterError as error:
             return SetParametersResult(successful=False, reason=str(error))
         return super().set_parameters_atomically(converted)
-
-    def _check(self, parameters: list[Parameter]) -> SetParametersResult:
-        """Say whether parameters can be set, without setting anything."""
-        model = self._operation.model
-        try:
-            self._known.check_together(parameters)
-            if model is not None:
-                _check_settled(parameters)
-                override_all(model.machine, self._known.machine_values(parameters))
-        except (MachineError, ParameterError) as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
-
-    def _apply(self, parameters: list[Parameter]) -> None:
-        """Let parameters that have been set take effect."""
-        self._known.take(parameters)
-        self._operation.update()
-        self._watch.alarm.settings = self._known.alarm_settings()
-        model, values = self._operation.model, self._known.machine_values(parameters)
-        if model is not None and (values or any(p.name == "harmonics" for p in parameters)):
-            self._operation.change(override_all(model.machine, values))
-        self._curves.look()
 
     def caught(self, error: Exception) -> None:
         """Count an exception that a callback raised, and say which."""
@@ -193,21 +172,14 @@ class Predictor(LifecycleNode):
         ]
 
 
-def _check_settled(parameters: list[Parameter]) -> None:
-    """Refuse what cannot be changed while there is a machine."""
-    for parameter in parameters:
-        if parameter.name in _SETTLED:
-            raise ParameterError(
-                f"{parameter.name} can only be changed while the node is unconfigured: clean it up"
-            )
-
-
 def main() -> int:
     """Run the predictor until SIGINT or SIGTERM."""
+    load_kernels()  # now, as a prediction cannot wait for it
     return run("predictor", Predictor, _spin)
 
 
 def _spin(predictor: Predictor) -> int:
+    spare_what_is_loaded()
     try:
         guard.spin(predictor, predictor.caught)
     finally:

@@ -29,11 +29,11 @@ MACHINE = override_all(
 )
 
 
-def begin(start, graph: Graph, folder: Path, speed: float, *parameters: str) -> Remote:
-    """Start a predictor of the machine, and wait until it predicts at a speed [rad/s]."""
+def given(folder: Path, *parameters: str) -> list[str]:
+    """Return the arguments of a predictor of the machine, whose file goes into a folder."""
     file = folder / "machine.yaml"
     file.write_text(yaml.safe_dump(machine_to_dict(MACHINE)))
-    given = (
+    values = (
         f"machine_file:={file}",
         "harmonics:=1",
         f"speed.min:={3850.0 * RPM}",
@@ -43,7 +43,12 @@ def begin(start, graph: Graph, folder: Path, speed: float, *parameters: str) -> 
         "publish_rate:=1000.0",
         *parameters,
     )
-    start(*(part for one in given for part in ("-p", one)))
+    return [part for value in values for part in ("-p", value)]
+
+
+def begin(start, graph: Graph, folder: Path, speed: float, *parameters: str) -> Remote:
+    """Start a predictor of the machine, and wait until it predicts at a speed [rad/s]."""
+    start(*given(folder, *parameters))
     remote = Remote(graph)
     remote.meet(speed)
     return remote

@@ -38,6 +38,15 @@ def test_inputs_wait_arrive_and_grow_stale(speed):
     assert "stale, its last message came 1.5 s ago" in status(speed, now=11.5).message
 
 
+def test_a_speed_whose_stamp_lags_is_warned_of(speed):
+    speed.accept(300.0, SECOND, 2 * SECOND, now=10.0)
+    assert status(speed, now=10.0).level == Level.OK
+    speed.accept(300.0, SECOND, 3 * SECOND, now=11.0)
+    late = status(speed, now=11.0)
+    assert late.level == Level.WARN
+    assert late.message.startswith("~/speed arrives late, its last stamp was 2.0 s old")
+
+
 def test_what_was_dropped_is_told_for_a_while_and_counted_for_ever(speed):
     load: Feed[float] = Feed("~/load")
     speed.accept(300.0, SECOND, SECOND, now=10.0)

@@ -7,6 +7,7 @@ rosbag2 read without a package of our own; a typed interface package can replace
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Iterable, Iterator, Mapping
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -116,9 +117,9 @@ def diagnostics_message(
     stamp: Time, node: str, hardware: str, statuses: Iterable[Status]
 ) -> DiagnosticArray:
     """Return what a node says about itself, named `node: subject` after REP 107."""
-    array = DiagnosticArray(header=Header(stamp=stamp.to_msg()))
-    array.status = [status_message(node, hardware, status) for status in statuses]
-    return array
+    message = DiagnosticArray(header=Header(stamp=stamp.to_msg()))
+    message.status = [status_message(node, hardware, status) for status in statuses]
+    return message
 
 
 def status_message(node: str, hardware: str, status: Status) -> DiagnosticStatus:
@@ -135,7 +136,9 @@ def status_message(node: str, hardware: str, status: Status) -> DiagnosticStatus
 def numbers_message(stamp: Time, frame: str, numbers: Mapping[str, float]) -> JointState:
     """Return a message of named numbers."""
     header = Header(stamp=stamp.to_msg(), frame_id=frame)
-    return JointState(header=header, name=list(numbers), position=list(numbers.values()))
+    # An array, as rclpy would look at every number of a list.
+    position = array("d", numbers.values())
+    return JointState(header=header, name=list(numbers), position=position)
 
 
 def eccentricities(journals: Journals, others: Journals) -> Named:

@@ -39,13 +39,13 @@ def response_curve_message(
 ) -> PointCloud2:
     """Return a response curve over the speed, branch after branch, those detached at the end.
 
-    The fields of a point are those of `CURVE_POINT`.
+    The fields of a point are those of `CURVE_POINT`. Without branches there are no points.
     """
     parts = [
         _points(branch, index, index >= len(branches))
         for index, branch in enumerate((*branches, *detached))
     ]
-    points = np.concatenate(parts)
+    points = np.concatenate([np.empty(0, CURVE_POINT), *parts])
     return PointCloud2(
         header=Header(stamp=stamp.to_msg()),
         height=1,

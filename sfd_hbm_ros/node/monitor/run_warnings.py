@@ -105,14 +105,24 @@ class WarningRecord:
     def follow(self, point: RunPoint) -> None:
         """Take a prediction, and note a jump on the way from the one before."""
         before, self._point = self._point, point
+        if before is None:
+            return
         # A warning is given after the prediction that it bears on, but may come before it.
         earlier = [warning for warning in self._warnings if warning.stamp < point.stamp]
-        if before is None or not earlier or not earlier[-1].passed(before.rpm, point.rpm):
-            return
-        eccentricities = before.eccentricity_max, point.eccentricity_max
-        ahead = math.nan
-        for warning in reversed(earlier):
-            if not warning.announces(earlier[-1]):
-                break
-            ahead = (point.stamp - warning.stamp) * 1e-9
-        self.jumps.append(MetJump(earlier[-1], *eccentricities, ahead))
+        while earlier:
+            if earlier[-1].passed(before.rpm, point.rpm):
+                self.jumps.append(_met(earlier, before, point))
+                return
+            # The newest may already bear on a prediction between both that has not come here.
+            if earlier.pop().stamp < before.stamp:
+                return
+
+
+def _met(warnings: list[JumpWarning], before: RunPoint, after: RunPoint) -> MetJump:
+    """The jump of the last of some warnings, between two predictions."""
+    ahead = math.nan
+    for warning in reversed(warnings):
+        if not warning.announces(warnings[-1]):
+            break
+        ahead = (after.stamp - warning.stamp) * 1e-9
+    return MetJump(warnings[-1], before.eccentricity_max, after.eccentricity_max, ahead)

@@ -11,7 +11,8 @@ import numpy as np
 from sfd_hbm_ros.hbm import Harmonics, JournalMotion
 from sfd_hbm_ros.node.simulator.played_machine import no_other, thrown
 from sfd_hbm_ros.node.simulator.speed_profile import SpeedProfile
-from sfd_hbm_ros.response.curves.curve import NoSolutionError, ResponseCurve
+from sfd_hbm_ros.response.curves.curve import ResponseCurve
+from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.response.integration.integrator import ClearanceError, Integrator
 from sfd_hbm_ros.response.integration.options import SAMPLES
 from sfd_hbm_ros.response.integration.ramp import Ramp

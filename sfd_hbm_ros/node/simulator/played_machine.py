@@ -7,7 +7,8 @@ from typing import Protocol
 
 from sfd_hbm_ros.hbm import JournalMotion, Solution
 from sfd_hbm_ros.node.simulator.speed_profile import SpeedProfile
-from sfd_hbm_ros.response.curves.curve import NoSolutionError, ResponseCurve
+from sfd_hbm_ros.response.curves.curve import ResponseCurve
+from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.response.tracking.tracker import Tracker
 from sfd_hbm_ros.units import RPM
 

@@ -14,6 +14,7 @@ from rclpy.time import Time
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
+from sfd_hbm_ros.kernels import load_kernels
 from sfd_hbm_ros.node import guard
 from sfd_hbm_ros.node.messages.common import harmonics_message, speed_message
 from sfd_hbm_ros.node.process import run
@@ -21,7 +22,7 @@ from sfd_hbm_ros.node.simulator.disturbance import Disturbance
 from sfd_hbm_ros.node.simulator.parameters import declare, take
 from sfd_hbm_ros.node.simulator.played_machine import JumpError
 from sfd_hbm_ros.node.simulator.simulation import play
-from sfd_hbm_ros.response.curves.curve import NoSolutionError
+from sfd_hbm_ros.response.errors import NoSolutionError
 
 _QUEUE = 10
 _PAUSE = 10.0  # s between two like log messages
@@ -140,6 +141,7 @@ class Simulator(Node):
 
 def main() -> int:
     """Run the simulator until the end of its last coast-down."""
+    load_kernels()  # now, as the run cannot wait for it
     return run("simulator", Simulator, _simulate)
 
 

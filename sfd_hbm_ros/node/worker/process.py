@@ -16,9 +16,10 @@ from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from typing import Any, NoReturn
 
+from sfd_hbm_ros.kernels import load_kernels
 from sfd_hbm_ros.machine import MachineError
 from sfd_hbm_ros.node.worker.curve_job import CurveJob, Failure, compute
-from sfd_hbm_ros.response.curves.curve import NoSolutionError
+from sfd_hbm_ros.response.errors import NoSolutionError
 
 _NICE = 10  # live predictions come first
 
@@ -92,6 +93,7 @@ def main() -> None:
     """Serve the connection whose file descriptor is the only argument."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that started it will end it
     os.nice(_NICE)
+    load_kernels()
     with suppress(ConnectionError):
         serve(Connection(int(sys.argv[1])))
 

@@ -23,10 +23,10 @@ class Renewal:
     _first: float = math.inf  # change that no finished computation holds
     _last: float = -math.inf
 
-    def change(self, now: float) -> None:
-        """Note a change."""
+    def change(self, now: float, first: bool = False) -> None:
+        """Note a change; the first computation of all need not wait for another."""
         self._waiting = True
-        self._first, self._last = min(self._first, now), now
+        self._first, self._last = min(self._first, now), -math.inf if first else now
 
     def due(self, now: float, busy: bool) -> bool:
         """Return whether to compute now, which is to be done then.

@@ -9,18 +9,24 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, NewtonOptions, Solution
-from sfd_hbm_ros.hbm.newton import newton
-from sfd_hbm_ros.hbm.solve import solution_at
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.journey import Journey, first_place, travel
+from sfd_hbm_ros.response.curves.judged import CurveBranch
 from sfd_hbm_ros.response.curves.place import Place, motion_about, orbit_amid, places_at
-from sfd_hbm_ros.response.responses import balanced
+from sfd_hbm_ros.response.tracking.course import Course
 from sfd_hbm_ros.response.tracking.following import NEAR
+from sfd_hbm_ros.response.tracking.solved import solved
+
+Array = NDArray[np.float64]
 
 _ALIKE = 0.2  # distance from an outdated curve, in clearances, within which it still guides
+_KEPT = 16  # places whose coefficients are kept, as they are asked for again
 _ROUNDING = 1e-9  # of two distances, in clearances
-_NEWTON = NewtonOptions(iterations=8)  # a start off the curve is near
+_NEWTON = NewtonOptions(iterations=8, shortest_step=0.1)  # a start off the curve is near
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +61,12 @@ class Guide:
 
     def places(self, speed: float) -> list[Place]:
         """All places of the curve at a speed [rad/s]."""
-        return places_at(self.curve.branches, speed) if self.curve else []
+        if self.curve is None:
+            return []
+        if speed not in self._places:
+            self._places.clear()  # what is asked again is asked at the newest speed
+            self._places[speed] = places_at(self.curve.branches, speed)
+        return self._places[speed]
 
     def others(self, speed: float, place: Place | None, eccentricity: float) -> list[Place]:
         """Stable places but one at a speed [rad/s], the nearest to an eccentricity first."""
@@ -98,20 +109,21 @@ class Guide:
         orbit = self._orbit(place)
         if orbit is None:
             return None
-        balance = self.balance_for(orbit.harmonics)
-        x = orbit.coefficients
-        start = self._orbit(beside) if beside else None
-        if known and start and orbit.is_at(start):
-            x = x + known.coefficients - start.coefficients
-        equations = balance.at(place.value)
-        result = newton(equations, x.ravel(), _NEWTON)
-        if not balanced(equations, result):
+        start = self._coefficients(orbit)
+        amid = self._orbit(beside) if beside and known else None
+        if known and amid and orbit.is_at(amid):
+            start = start + known.coefficients - self._coefficients(amid)
+        equations = self.balance_for(orbit.harmonics).at(place.value)
+        solution = solved(equations, start.ravel(), _NEWTON)
+        if solution is None:
             return None
-        solution = solution_at(balance, place.value, result.x)
-        places = [other for other in self.places(place.value) if other.branch.periodic]
-        nearest = min(other.distance(solution) for other in places)
-        near = orbit.distance(solution) < min(self._limit, nearest + _ROUNDING)
-        return solution if near else None
+        own = self._distance(orbit, solution)
+        others = [
+            self._distance(other, solution) + _ROUNDING
+            for other in self.places(place.value)
+            if other.branch.periodic and not other.is_at(orbit)
+        ]
+        return solution if own < min(self._limit, *others, np.inf) else None
 
     def landings(self, left: Solution, speed: float) -> Iterator[Solution]:
         """Responses near the curve's stable places at a speed [rad/s], the likelier first.
@@ -133,13 +145,13 @@ class Guide:
 
         For an unstable circular orbit it is the stable quasi-periodic one about it, if any.
         """
-        places = [
-            place
+        places = (
+            (self._distance(place, solution), place)
             for place in self.places(solution.speed)
             if place.tenable and place.branch.periodic
-        ]
-        place = min(places, key=lambda place: place.distance(solution), default=None)
-        if self.curve is None or place is None or place.distance(solution) >= self._limit:
+        )
+        distance, place = min(places, key=lambda one: one[0], default=(np.inf, None))
+        if self.curve is None or place is None or distance >= self._limit:
             return None
         return motion_about(self.curve, place) or place
 
@@ -147,9 +159,37 @@ class Guide:
         """The place itself, or that of the circle amid a quasi-periodic response."""
         return orbit_amid(self.curve, place) if self.curve else place
 
+    def _coefficients(self, place: Place) -> Array:
+        """The curve's coefficients at a place of a periodic branch [m], (rows, n)."""
+        if place not in self._starts:
+            if len(self._starts) >= _KEPT:
+                self._starts.clear()
+            course = self._courses.setdefault(place.branch, Course(place.branch))
+            self._starts[place] = course.coefficients(place)
+        return self._starts[place]
+
+    def _distance(self, place: Place, solution: Solution) -> float:
+        """Distance of a periodic place from a response, in clearances."""
+        if place.harmonics != solution.harmonics:
+            return place.distance(solution)
+        apart = self._coefficients(place) - solution.coefficients
+        return float(np.abs(apart / self.balance.clearances).max())
+
     @property
     def _limit(self) -> float:
         return NEAR if self.current else _ALIKE
+
+    @cached_property
+    def _places(self) -> dict[float, list[Place]]:
+        return {}
+
+    @cached_property
+    def _starts(self) -> dict[Place, Array]:
+        return {}
+
+    @cached_property
+    def _courses(self) -> dict[CurveBranch, Course]:
+        return {}
 
     @cached_property
     def _balances(self) -> dict[Harmonics, HarmonicBalance]:

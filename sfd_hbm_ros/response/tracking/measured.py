@@ -6,12 +6,16 @@ peak [m] and ``damper_1/x/1x/phase`` the lag [rad] of the harmonic of order 1 in
 x = X0 + sum A_i cos(i W t - phase_i). A measured orbit may hold any of these.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sfd_hbm_ros.hbm import JournalMotion, Solution
+from sfd_hbm_ros.hbm import Harmonics, JournalMotion, Solution
+
+Array = NDArray[np.float64]
 
 LIMIT = 0.5
 """Disagreement below which an orbit is recognised."""
@@ -63,9 +67,38 @@ class Verdict:
 
 def named_harmonics(journals: Mapping[str, JournalMotion]) -> dict[str, float]:
     """The harmonics of all journals by their names."""
-    return {
-        name: value for motion in journals.values() for name, value in _named_harmonics(motion)
-    }
+    named: dict[str, float] = {}
+    for motion in journals.values():
+        names = harmonic_names(motion.name, motion.harmonics)
+        named.update(zip(names, harmonic_values(motion).tolist(), strict=True))
+    return named
+
+
+@lru_cache(maxsize=64)
+def harmonic_names(damper: str, harmonics: Harmonics) -> tuple[str, ...]:
+    """Names of a journal's harmonics, those of x first; kept, as they are asked for all the time.
+
+    Parameters
+    ----------
+    damper : str
+        The journal's damper.
+    harmonics : Harmonics
+        The orders.
+    """
+    parts = ["0x"]
+    for order in harmonics.orders[1:]:
+        parts += [f"{order:g}x/amplitude", f"{order:g}x/phase"]
+    return tuple(f"{damper}/{axis}/{part}" for axis in "xy" for part in parts)
+
+
+def harmonic_values(motion: JournalMotion) -> Array:
+    """The numbers of a journal's harmonics, in the order of `harmonic_names`, (2 rows,)."""
+    coefficients = motion.coefficients.T
+    cos, sin = coefficients[:, 1::2], coefficients[:, 2::2] + 0.0  # no negative zero, no lag of pi
+    values = coefficients.copy()
+    values[:, 1::2] = np.hypot(cos, sin)
+    values[:, 2::2] = np.arctan2(sin, cos)
+    return values.ravel()
 
 
 def agreement(measured: Mapping[str, float], solution: Solution) -> Agreement:
@@ -123,16 +156,6 @@ def verdict(measured: Mapping[str, float], candidates: Sequence[Solution]) -> Ve
         sentence = f"{per_cent} from one response and {100.0 * min(others):.0f} % from another"
         return Verdict(best, False, found[best], sentence)
     return Verdict(best, True, found[best], f"{per_cent} from its response")
-
-
-def _named_harmonics(motion: JournalMotion) -> Iterator[tuple[str, float]]:
-    """The harmonics of one journal with their names."""
-    orders = [f"{order:g}x" for order in motion.harmonics.orders]
-    for axis, cos, sin in zip("xy", motion.cos.T.tolist(), motion.sin.T.tolist(), strict=True):
-        yield f"{motion.name}/{axis}/0x", cos[0]
-        for order, c, s in list(zip(orders, cos, sin, strict=True))[1:]:
-            yield f"{motion.name}/{axis}/{order}/amplitude", float(np.hypot(c, s))
-            yield f"{motion.name}/{axis}/{order}/phase", float(np.arctan2(s, c))
 
 
 def _has_amplitude(name: str, measured: Mapping[str, float]) -> bool:

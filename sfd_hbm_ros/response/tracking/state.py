@@ -1,7 +1,7 @@
 """What a predictor remembers over a restart: its response, and its alarm."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,6 +32,8 @@ class State:
         When that was [ns].
     alarm : mapping
         State of the alarms, as JSON can hold it.
+    loads : mapping of str to (2,) tuple of float
+        Forces x, y that were given while the machine ran [N], by their stations.
     """
 
     speed: float
@@ -40,6 +42,7 @@ class State:
     settled: bool
     stamp: int
     alarm: Mapping[str, Any]
+    loads: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 class Restored(NamedTuple):
@@ -86,15 +89,16 @@ def to_plain(state: State) -> dict[str, Any]:
         "settled": state.settled,
         "stamp": state.stamp,
         "alarm": dict(state.alarm),
+        "loads": {station: list(force) for station, force in state.loads.items()},
     }
 
 
 def from_plain(content: Mapping[str, Any]) -> State:
-    """The state that `to_plain` made plain.
+    """The state that `to_plain` made plain; the loads may be missing, as in older files.
 
     Raises
     ------
-    KeyError, TypeError, ValueError
+    AttributeError, KeyError, TypeError, ValueError
         If it is no state.
     """
     given = content["harmonics"]
@@ -110,4 +114,5 @@ def from_plain(content: Mapping[str, Any]) -> State:
         bool(content["settled"]),
         int(content["stamp"]),
         content["alarm"],
+        {station: (float(x), float(y)) for station, (x, y) in content.get("loads", {}).items()},
     )

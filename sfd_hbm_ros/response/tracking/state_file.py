@@ -31,10 +31,12 @@ def save_state(path: str | os.PathLike[str], machine: Machine, state: State) -> 
     StateFileError
         If the file cannot be written; an older one is as it was.
     """
-    target = Path(path)
+    target = Path(os.path.realpath(path))  # a link stays one
     part = target.with_name(target.name + ".part")
     try:
         text = _text(machine, state)
+        if target.exists():
+            _check_regular(target)
         try:
             with open(part, "w", encoding="utf-8") as file:
                 file.write(text)
@@ -68,7 +70,7 @@ def load_state(path: str | os.PathLike[str], machine: Machine) -> State | None:
         raise StateFileError(f"{path}: refused: foreign, the state of another machine")
     try:
         return from_plain(content["state"])
-    except (KeyError, TypeError, ValueError) as error:
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise StateFileError(f"{path}: refused: no state: {error}") from None
 
 
@@ -93,13 +95,18 @@ def _text(machine: Machine, state: State) -> str:
 
 def _read(path: str | os.PathLike[str]) -> str:
     """The text of a file."""
-    if not stat.S_ISREG(os.stat(path).st_mode):
-        raise ValueError("not a regular file")
+    _check_regular(path)
     with open(path, "rb") as file:
         text = file.read(_LARGEST + 1)
     if len(text) > _LARGEST:
         raise ValueError(f"larger than {_LARGEST} bytes")
     return text.decode("utf-8")
+
+
+def _check_regular(path: str | os.PathLike[str]) -> None:
+    """Refuse a device, a pipe or a folder, which is neither read nor replaced."""
+    if not stat.S_ISREG(os.stat(path).st_mode):
+        raise ValueError("not a regular file")
 
 
 def _checked(text: str) -> dict[str, Any]:

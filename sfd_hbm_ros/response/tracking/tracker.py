@@ -8,31 +8,16 @@ far, so that a fold shows. A machine that moves quasi-periodically about an unst
 has that circle as its solution, its place on the quasi-periodic branch, and jumps at its end.
 """
 
-from collections.abc import Iterator
-from typing import NamedTuple
-
 import numpy as np
 
-from sfd_hbm_ros.hbm import HarmonicBalance, Solution, solve
+from sfd_hbm_ros.hbm import HarmonicBalance, Solution
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.place import Place
-from sfd_hbm_ros.response.tracking.following import Followed, follow, holds
 from sfd_hbm_ros.response.tracking.guide import Guide
+from sfd_hbm_ros.response.tracking.operating_point import OperatingPoint, begun, placed
+from sfd_hbm_ros.response.tracking.pursuit import pursued
 from sfd_hbm_ros.response.tracking.tracked import BranchName, Tracked, branch_name, no_solution
-from sfd_hbm_ros.response.tracking.way import Way
-
-_BESIDE = (0.97, 1.03)  # of a speed, from where a response is followed to it that no guess finds
-
-
-class _Point(NamedTuple):
-    """A response of the machine `balance`, and what is known of it beside."""
-
-    balance: HarmonicBalance
-    solution: Solution
-    place: Place | None = None
-    jumped: bool = False
-    stable: bool | None = None
-    orientation: float | None = None
+from sfd_hbm_ros.rotor import ResonanceError
 
 
 class Tracker:
@@ -50,8 +35,8 @@ class Tracker:
 
     def __init__(self, balance: HarmonicBalance) -> None:
         self._guide = Guide(balance)
-        self._last: _Point | None = None
-        self._beside: tuple[Place, Solution] | None = None  # the other stable response
+        self._last: OperatingPoint | None = None
+        self._beside: tuple[Place, Solution | None] | None = None  # the other stable response
         self._settled = False
         self._origin: float | None = None  # speed from which a response not settled was followed
 
@@ -78,7 +63,7 @@ class Tracker:
     def change(self, balance: HarmonicBalance) -> None:
         """Go on with other loads, parameters or harmonics of the machine."""
         self._guide = Guide(balance, self._guide.curve)
-        self._origin = None
+        self._beside = self._origin = None
 
     def adopt(self, curve: ResponseCurve) -> None:
         """Be guided by a curve over the speed, current or outdated, in place of any other."""
@@ -100,7 +85,7 @@ class Tracker:
         """
         if not solution.converged:
             raise ValueError(f"there is no solution at {solution.speed} rad/s to settle on")
-        self._last = self._point(solution)
+        self._last = placed(self._guide, solution)
         self._settled = True
 
     def forget(self) -> None:
@@ -112,10 +97,10 @@ class Tracker:
         """Follow the machine to a speed [rad/s].
 
         On a current curve this takes one run of Newton's method, two where there is another
-        stable response, whether the machine jumps or not. Without one it takes one run if no
-        coefficient moves by more than `following.NEAR`, or else at most `following.POINTS` points
-        of a branch. If the machine jumps then, there is one run for each place of an outdated
-        curve, and at most five calls of `solve`.
+        stable response, whether the machine jumps or not. Without one it takes a run for each
+        stride of `follow`, mostly one, or where it comes near a fold at most `following.POINTS`
+        points of a branch. If the machine jumps then, there is one run for each place of an
+        outdated curve, and at most five calls of `solve`.
 
         No exception is raised. Where there is no solution, or the speed is not positive and
         finite, the solution says so, and the next prediction starts from the last that converged.
@@ -127,24 +112,23 @@ class Tracker:
                     return Tracked(point.solution)
                 self._last = point
                 return self._tracked(point)
-        except Exception as error:  # a speed or a machine beyond what numbers can hold
+        except ResonanceError as error:
             return Tracked(no_solution(self._guide.balance, speed, str(error)))
+        except Exception as error:  # a speed or a machine beyond what numbers can hold
+            reason = f"{type(error).__name__}: {error}"
+            return Tracked(no_solution(self._guide.balance, speed, reason))
 
-    def _advanced(self, speed: float) -> _Point:
+    def _advanced(self, speed: float) -> OperatingPoint:
         if self._last is None:
-            return self._begun(speed)
-        return self._travelled(self._last, speed) or self._followed(self._last, speed)
+            self._origin = speed
+            return begun(self._guide, speed)
+        travelled = self._travelled(self._last, speed)
+        if travelled:
+            return travelled
+        self._origin = self._origin or speed
+        return pursued(self._guide, self._last, speed)
 
-    def _begun(self, speed: float) -> _Point:
-        """The response without a history."""
-        self._origin = speed
-        place = self._guide.run_up(speed).place
-        solution = self._guide.solved(place) if place else None
-        if place and solution:
-            return _Point(self._guide.balance, solution, place, stable=place.stable_orbit)
-        return self._tenable(iter([solve(self._guide.balance, speed)]))
-
-    def _travelled(self, last: _Point, speed: float) -> _Point | None:
+    def _travelled(self, last: OperatingPoint, speed: float) -> OperatingPoint | None:
         """The response at the end of a journey along the current curve, if it leads there."""
         if last.place is None or last.balance is not self._guide.balance:
             return None
@@ -152,61 +136,9 @@ class Tracker:
         solution = self._guide.solved(place, last.place, last.solution) if place else None
         if not (place and solution):
             return None
-        return _Point(self._guide.balance, solution, place, jumps > 0, place.stable_orbit)
+        return OperatingPoint(self._guide.balance, solution, place, jumps > 0, place.stable_orbit)
 
-    def _followed(self, last: _Point, speed: float) -> _Point:
-        """The response followed along its branch, or that onto which the machine jumps."""
-        self._origin = self._origin or speed
-        solution, part, orientation = self._way(last, speed)
-        if solution and part == 1.0:
-            point = self._point(solution, orientation)
-            if point.place or not self.current or holds(point.balance, solution):
-                return point
-        left = solution or last.solution
-        point = self._tenable(self._landings(left, speed))
-        return point._replace(jumped=True)
-
-    def _way(self, last: _Point, speed: float) -> Followed:
-        """How far the response can be followed."""
-        old, harmonics = last.solution, self._guide.balance.harmonics
-        if old.harmonics.revolutions > harmonics.revolutions:
-            harmonics = old.harmonics
-        end = self._guide.balance_for(harmonics)
-        x = harmonics.change_from(old.harmonics, old.coefficients)
-        if x.shape[1] != end.clearances.size:
-            return Followed(None, 0.0, None)
-        start = end
-        if last.balance is not self._guide.balance:
-            start = HarmonicBalance(last.balance.machine, harmonics, last.balance.model)
-        return follow(Way(start, old.speed, end, speed), x.ravel(), last.orientation)
-
-    def _landings(self, left: Solution, speed: float) -> Iterator[Solution]:
-        """Responses onto which a machine may jump, the likelier first."""
-        yield from self._guide.landings(left, speed)
-        yield solve(self._guide.balance, speed)
-        for beside in _BESIDE:
-            start = solve(self._guide.balance, beside * speed)
-            if start.converged:
-                yield solve(self._guide.balance, speed, start)
-
-    def _tenable(self, candidates: Iterator[Solution]) -> _Point:
-        """The first candidate on which a machine can be, or else the first that converged."""
-        tried: list[Solution] = []
-        for solution in candidates:
-            balance = self._guide.balance_for(solution.harmonics)
-            if solution.converged and holds(balance, solution):
-                return self._point(solution)
-            tried.append(solution)
-        best = max(tried, key=lambda solution: solution.converged)
-        return _Point(self._guide.balance, best, stable=False)
-
-    def _point(self, solution: Solution, orientation: float | None = None) -> _Point:
-        """A response with its place on the curve."""
-        place = self._guide.match(solution)
-        stable = place.stable_orbit if place and self.current else None
-        return _Point(self._guide.balance, solution, place, False, stable, orientation)
-
-    def _tracked(self, point: _Point) -> Tracked:
+    def _tracked(self, point: OperatingPoint) -> Tracked:
         """What there is to say about a point."""
         solution, place = point.solution, point.place
         others = self._guide.others(solution.speed, place, solution.eccentricity_max)
@@ -220,6 +152,7 @@ class Tracker:
     def _solved_beside(self, place: Place) -> Solution | None:
         """The other stable response."""
         beside, known = self._beside or (None, None)
-        solution = self._guide.solved(place, beside, known)
-        self._beside = (place, solution) if solution else None
-        return solution
+        if beside and not known and place.is_at(beside):
+            return None  # it is not sought again and again where an outdated curve is wrong
+        self._beside = place, self._guide.solved(place, beside, known)
+        return self._beside[1]

@@ -55,6 +55,13 @@ def read(cloud: PointCloud2) -> list[dict[str, float]]:
     ]
 
 
+def test_curve_without_branches_has_no_points():
+    message = sent(response_curve_message(STAMP, (), ()))
+    assert (message.width, message.row_step, len(message.data)) == (0, 0, 0)
+    whole = response_curve_message(STAMP, result().curve.branches, ())
+    assert message.fields == whole.fields
+
+
 def test_every_point_of_a_curve_arrives():
     branches = result().curve.branches
     cloud = sent(response_curve_message(STAMP, branches, ()))

@@ -147,6 +147,19 @@ def test_a_jump_is_met_where_the_expected_speed_is_passed(
     assert jump.ahead == pytest.approx(2.98)
 
 
+def test_a_jump_is_met_though_a_prediction_behind_it_has_not_come() -> None:
+    """That one has already led to another warning before the next prediction."""
+    record = WarningRecord()
+    record.take(warning(1.0, 1, 3000.0))
+    record.follow(at(2995.0, 0.7, time=2.0))
+    record.take(warning(2.03, 0, math.inf))  # of a prediction at 3001 rpm and 2.02 s
+    record.follow(at(3005.0, 0.3, time=2.04))
+    record.follow(at(3010.0, 0.3, time=2.06))
+    [jump] = record.jumps
+    assert (jump.before, jump.after, jump.warning.rpm) == (0.7, 0.3, 3000.0)
+    assert jump.ahead == pytest.approx(1.04)
+
+
 def test_no_jump_is_met_in_the_other_direction_or_unwarned() -> None:
     record = WarningRecord()
     record.take(warning(1.0, 0, 3000.0, "run_up"))

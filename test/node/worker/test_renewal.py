@@ -34,6 +34,16 @@ def test_without_a_change_nothing_is_computed():
     assert computed([], 1.0, 20.0) == []
 
 
+def test_the_first_computation_waits_for_nothing():
+    renewal = Renewal()
+    renewal.change(7.0, first=True)
+    assert renewal.due(7.0, busy=False)
+    assert not renewal.due(7.01, busy=True)
+    renewal.change(8.0)
+    assert not renewal.due(8.0 + 0.5 * QUIET, busy=False)
+    assert renewal.due(8.01 + QUIET, busy=False)
+
+
 def test_it_begins_soon_after_the_last_of_several_changes():
     [(begun, _)] = computed([1.0, 1.2, 1.4], 1.0, 20.0)
     assert begun == pytest.approx(1.4 + QUIET, abs=0.02)

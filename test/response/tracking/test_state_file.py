@@ -10,7 +10,7 @@ import pytest
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.machine import override
-from sfd_hbm_ros.response.tracking.state import State, restore
+from sfd_hbm_ros.response.tracking.state import State, from_plain, restore, to_plain
 from sfd_hbm_ros.response.tracking.state_file import StateFileError, load_state, save_state
 
 from ...hbm.machines import PAPER, random_machine
@@ -24,13 +24,14 @@ STATE = State(
     settled=True,
     stamp=1_700_000_000_123_456_789,
     alarm={"latched": True, "since": 12.5, "note": "Öl"},
+    loads={"disk_3": (0.0, -70.5)},
 )
 
 
 def equal(one, other):
     return one.coefficients.tolist() == other.coefficients.tolist() and all(
         getattr(one, name) == getattr(other, name)
-        for name in ("speed", "harmonics", "settled", "stamp", "alarm")
+        for name in ("speed", "harmonics", "settled", "stamp", "alarm", "loads")
     )
 
 
@@ -50,6 +51,18 @@ def test_state_comes_back_exactly_and_alone(path):
 def test_newer_state_replaces_the_older(path):
     save_state(path, PAPER, replace(STATE, stamp=5))
     assert load_state(path, PAPER).stamp == 5
+
+
+def test_older_state_without_loads_is_read():
+    plain = to_plain(STATE)
+    del plain["loads"]
+    assert equal(from_plain(plain), replace(STATE, loads={}))
+
+
+@pytest.mark.parametrize("loads", [[1], {"disk_3": [1.0]}, {"disk_3": ["a", 0.0]}])
+def test_loads_that_are_none_are_refused(loads):
+    with pytest.raises((AttributeError, ValueError)):
+        from_plain({**to_plain(STATE), "loads": loads})
 
 
 def test_no_file_is_no_state(tmp_path):
@@ -114,11 +127,22 @@ def test_other_files_are_refused(path, text, reason):
 
 def test_what_is_no_file_is_refused(tmp_path):
     os.mkfifo(tmp_path / "pipe")
-    for path in (tmp_path, tmp_path / "pipe"):
+    os.symlink(os.devnull, tmp_path / "device")
+    for path in (tmp_path, tmp_path / "pipe", tmp_path / "device"):
+        before = os.stat(path)
         with pytest.raises(StateFileError, match="refused: not a regular file"):
             load_state(path, PAPER)
-    with pytest.raises(StateFileError, match="cannot be written: Is a directory"):
-        save_state(tmp_path, PAPER, STATE)
+        with pytest.raises(StateFileError, match="cannot be written: not a regular file"):
+            save_state(path, PAPER, STATE)
+        assert os.path.samestat(os.stat(path), before)
+
+
+def test_file_behind_a_link_is_replaced_and_not_the_link(path, tmp_path):
+    link = tmp_path / "link.json"
+    link.symlink_to(path)
+    save_state(link, PAPER, replace(STATE, stamp=5))
+    assert link.is_symlink()
+    assert load_state(path, PAPER).stamp == 5
 
 
 def test_folder_that_is_none_is_told(path):

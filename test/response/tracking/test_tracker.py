@@ -276,6 +276,20 @@ def test_speeds_beyond_the_curve_are_predicted_and_it_is_found_again():
     assert (inside.branch, inside.jumped) == (BranchName.SINGLE, False)
 
 
+def test_solution_tells_the_history_of_its_residual_wherever_it_comes_from():
+    for tracker in (guided(), Tracker(balance())):
+        for said in followed(tracker, [3900.0, 3901.0, INSIDE, 4060.0, 4060.0]):
+            assert said.solution.residuals[-1] <= 1e-10
+            assert len(said.solution.residuals) == said.solution.iterations + 1
+
+
+def test_exception_is_told_with_its_type():
+    tracker = guided()
+    tracker.change(HarmonicBalance(balance().machine, Harmonics(1)))
+    said = tracker.predict(-1.0)
+    assert said.solution.message.startswith("ValueError: speed: -1.0 rad/s is not allowed")
+
+
 @pytest.mark.parametrize("speed", [np.nan, np.inf, -1.0, 0.0, 1e300])
 def test_speed_without_a_solution_is_told_and_changes_nothing(speed):
     tracker = guided()

@@ -1,0 +1,42 @@
+"""The operating point without a current curve: followed along its branch, or where it jumps to."""
+
+from sfd_hbm_ros.hbm import HarmonicBalance
+from sfd_hbm_ros.response.tracking.following import Followed, follow, holds
+from sfd_hbm_ros.response.tracking.guide import Guide
+from sfd_hbm_ros.response.tracking.operating_point import OperatingPoint, landed, placed
+from sfd_hbm_ros.response.tracking.way import Way
+
+
+def pursued(guide: Guide, last: OperatingPoint, speed: float) -> OperatingPoint:
+    """Follow a machine to a speed [rad/s] and to what it has become meanwhile.
+
+    Parameters
+    ----------
+    guide : Guide
+        The machine as it is now.
+    last : OperatingPoint
+        Where it was, and what it was then.
+    speed : float
+        The speed.
+    """
+    solution, part, orientation = _followed(guide, last, speed)
+    if solution and part == 1.0:
+        point = placed(guide, solution, orientation)
+        if point.place or not guide.current or holds(point.balance, solution):
+            return point
+    return landed(guide, solution or last.solution, speed)
+
+
+def _followed(guide: Guide, last: OperatingPoint, speed: float) -> Followed:
+    """How far the response can be followed."""
+    old, harmonics = last.solution, guide.balance.harmonics
+    if old.harmonics.revolutions > harmonics.revolutions:
+        harmonics = old.harmonics
+    end = guide.balance_for(harmonics)
+    x = harmonics.change_from(old.harmonics, old.coefficients)
+    if x.shape[1] != end.clearances.size:
+        return Followed(None, 0.0, None)
+    start = end
+    if last.balance is not guide.balance:
+        start = HarmonicBalance(last.balance.machine, harmonics, last.balance.model)
+    return follow(Way(start, old.speed, end, speed), x.ravel(), last.orientation)
