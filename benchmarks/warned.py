@@ -1,46 +1,38 @@
 """How well jumps are warned of: random run-ups and coast-downs of random machines.
 
-The jump is taken from the time integration, the warning from the response curve and from noisy
-speeds. A run counts as warned where the warning stood for the configured time before the jump
-came; chatter is a level that was entered more than once. Where the curve shows no jump ahead the
-whole range is run through, and any warning is false.
+Whether a machine jumps, and when, is taken from the time integration; the warning from the
+response curve and from noisy speeds. A jump counts as warned of where the warning was raised the
+configured time before it, and is called gone where it fell again before the machine jumped, which
+does so later than the curve says the faster its speed changes. Chatter is a warning that was
+raised more than once before the jump. Where the machine does not jump, any warning is false.
 
     python3 -m benchmarks.warned --runs 200
+    python3 -m benchmarks.warned --first 17 --runs 1
 """
 
 from __future__ import annotations
 
 import argparse
-import sys
+import time
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, Solution
-from sfd_hbm_ros.machine import Machine, override_all
-from sfd_hbm_ros.response.curves.curve import NoSolutionError, ResponseCurve, response_curve
+from benchmarks.warned_in_time import jump_in_time
+from benchmarks.warned_run import Run, random_run
 from sfd_hbm_ros.response.curves.journey import travel
-from sfd_hbm_ros.response.curves.jumps import solutions_at
-from sfd_hbm_ros.response.curves.place import Place, places_at
-from sfd_hbm_ros.response.integration.integrator import Integrator
-from sfd_hbm_ros.response.integration.observed import observed_jumps
-from sfd_hbm_ros.response.integration.ramp import Ramp
-from sfd_hbm_ros.response.integration.transient import run
+from sfd_hbm_ros.response.curves.place import Place
+from sfd_hbm_ros.response.errors import NoSolutionError
+from sfd_hbm_ros.response.integration.observed import LEAST
 from sfd_hbm_ros.response.warning.acceleration import AccelerationEstimator
 from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
-from sfd_hbm_ros.response.warning.jump_map import JumpMap, jump_map
+from sfd_hbm_ros.response.warning.jump_map import jump_map
+from sfd_hbm_ros.response.warning.outlook import unknown_outlook
 from sfd_hbm_ros.response.warning.settings import AlarmSettings, Level
-from sfd_hbm_ros.rotor import critical_speeds, hold_journals
-from test.hbm.machines import random_machine
-
-Array = NDArray[np.float64]
 
 AHEAD = 2.0  # s by which a jump is to be warned of
-APPROACH = 6.0  # s of a run before the jump that the curve shows
-BEYOND = 0.02  # part of the speed by which a run goes on beyond it
-INTEGRATED = 1.5  # s of the approach that are integrated, the rest being slow
 RATE, NOISE = 50.0, 0.05  # of the speeds: Hz, rad/s
 SETTINGS = AlarmSettings(
     margin_warn_rpm=0.0,
@@ -52,131 +44,122 @@ SETTINGS = AlarmSettings(
     on_delay=0.1,
     off_delay=1.0,
 )
+WRONG = "missed", "chatter", "false warning"
 
 
-@dataclass(frozen=True)
-class Case:
-    """A machine on its way.
+class Outcome(NamedTuple):
+    """What became of one run.
 
     Attributes
     ----------
-    curve : ResponseCurve
-        Its response.
-    ahead : JumpMap
-        Its jumps.
-    place : Place
-        Where it is at first.
-    ramp : Ramp
-        Its speed.
-    jumps : bool
-        Whether the curve shows a jump on the way.
+    verdict : str
+        What it counts as, or why it could not be judged.
+    about : str
+        The run, in words.
     """
 
-    curve: ResponseCurve
-    ahead: JumpMap
-    place: Place
-    ramp: Ramp
-    jumps: bool
+    verdict: str
+    about: str = ""
 
 
-def random_case(rng: np.random.Generator) -> Case:
-    """A random machine near the critical speed of its shaft with the journal held."""
-    machine = heavier(random_machine(int(rng.integers(10**6)), elements=6), rng.uniform(0.5, 2.5))
-    balance = HarmonicBalance(machine, Harmonics(1))
-    critical = critical_speeds(hold_journals(balance.model))[0].speed
-    curve = response_curve(balance, 0.85 * critical, 1.1 * critical)
-    ahead = jump_map(curve)
-    sign = float(rng.choice([-1.0, 1.0]))
-    begin, end = (0.851 * critical, 1.099 * critical)[:: int(sign)]
-    place = places_at(curve.branches, begin)[0]
-    jump = ahead.outlook(place, sign).next
-    if not np.isfinite(jump.speed):
-        return Case(curve, ahead, place, Ramp.between(begin, end, 0.02 * critical), False)
-    rate = critical * rng.uniform(0.002, 0.006)
-    start = jump.speed - sign * min(APPROACH * rate, abs(jump.speed - begin))
-    end = jump.speed * (1.0 + sign * BEYOND)
-    there = travel(curve, place, start).place
-    assert there is not None
-    return Case(curve, ahead, there, Ramp.between(start, end, rate), True)
-
-
-def heavier(machine: Machine, factor: float) -> Machine:
-    """A machine with a multiple of its unbalance."""
-    changes = {
-        f"unbalance.{one.station}.magnitude": factor * one.magnitude for one in machine.unbalance
-    }
-    return override_all(machine, changes)
-
-
-def time_of_jump(case: Case) -> float:
-    """When the machine jumps by the time integration [s]; NaN if it does not."""
-    balance, whole = case.curve.balance, case.ramp
-    rate, end = whole.acceleration, float(whole.speed(np.array([float(whole.revolutions)]))[0])
-    jump = case.ahead.outlook(case.place, rate).next.speed
-    start = max(whole.start, jump - INTEGRATED * rate, key=lambda speed: rate * speed)
-    place = travel(case.curve, case.place, start).place
-    assert place is not None
-    [solution] = [one for i, one in solutions_at(place.branch, start) if i == place.index]
-    assert isinstance(solution, Solution)  # not a quasi-periodic response
-    integrator = Integrator(balance, max(start, end))
-    ramp = Ramp.between(start, end, abs(rate))
-    found = observed_jumps(run(integrator, ramp, integrator.start(solution)))
-    return (found[0].speed - whole.start) / rate if found else np.nan
-
-
-def warnings(case: Case, rng: np.random.Generator) -> list[float]:
-    """When the level was entered [s], as noisy speeds came in up to the jump or the end."""
-    estimator, alarm, place = AccelerationEstimator(), JumpAlarm(SETTINGS), case.place
-    found, before = [], Level.OK
-    duration = float(case.ramp.time(np.array([float(case.ramp.revolutions)]))[0])
-    for time in np.arange(0.0, duration, 1.0 / RATE).tolist():
-        speed = case.ramp.start + case.ramp.acceleration * time + rng.normal(0.0, NOISE)
-        journey = travel(case.curve, place, speed)
-        if journey.place is None or journey.jumps:
-            break
-        place = journey.place
-        estimator.add(round(time * 1e9), speed)
-        outlook = case.ahead.outlook(place, estimator.acceleration)
-        alarm.update(outlook, place.eccentricity, time)
-        level = alarm.level(time)
-        if level > before:
-            found.append(time)
-        before = level
+def warnings(case: Run, until: float, rng: np.random.Generator) -> list[float]:
+    """When the warning rose and fell in turns [s], as noisy speeds came in until a time [s]."""
+    estimator, alarm, ahead = AccelerationEstimator(), JumpAlarm(SETTINGS), jump_map(case.curve)
+    place: Place | None = case.place
+    found: list[float] = []
+    for now in np.arange(0.0, until, 1.0 / RATE).tolist():
+        speed = case.ramp.start + case.ramp.acceleration * now + rng.normal(0.0, NOISE)
+        estimator.add(round(now * 1e9), speed)
+        place = travel(case.curve, place, speed).place if place else None
+        acceleration = estimator.acceleration
+        outlook = (
+            ahead.outlook(place, acceleration) if place else unknown_outlook(speed, acceleration)
+        )
+        alarm.update(outlook, place.eccentricity if place else np.nan, now)
+        if (alarm.level(now) is Level.WARN) != len(found) % 2:
+            found.append(now)
     return found
 
 
-def judge(rng: np.random.Generator) -> str:
-    """What became of one run."""
+def judge(rng: np.random.Generator) -> Outcome:
+    """Run a machine and see what became of it."""
     try:
-        case = random_case(rng)
-        raised = warnings(case, rng)
-        if not case.jumps:
-            return "false warning" if raised else "rightly silent"
-        jump = time_of_jump(case)
-    except NoSolutionError:
-        return "not computed"
-    if np.isnan(jump):
-        return "no jump in time"
-    if len(raised) > 1:
-        return "chatter"
-    return "warned" if raised and jump - raised[0] >= AHEAD else "missed"
+        case = random_run(rng)
+        jump = jump_in_time(case)
+    except NoSolutionError as error:
+        return Outcome(f"not judged: {error}")
+    return outcome(case, jump, warnings(case, min(jump, case.duration), rng))
 
 
-def main() -> None:
-    """Run and print the score."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--runs", type=int, default=200, help="runs that end in a jump")
-    parser.add_argument("--seed", type=int, default=1, help="of the random machines")
-    arguments = parser.parse_args()
-    rng, counts = np.random.default_rng(arguments.seed), Counter[str]()
-    while (jumped := sum(counts[key] for key in ("warned", "missed", "chatter"))) < arguments.runs:
-        print(f"\r{jumped} of {arguments.runs} jumps", end="", file=sys.stderr, flush=True)
-        counts[judge(rng)] += 1
-    print(file=sys.stderr)
-    for what, count in counts.most_common():
-        print(f"{count:5} {what}")
-    print(f"{100.0 * counts['warned'] / jumped:.1f} % warned at least {AHEAD:g} s ahead")
+def outcome(case: Run, jump: float, changes: Sequence[float]) -> Outcome:
+    """What became of a run.
+
+    Parameters
+    ----------
+    case : Run
+        The run.
+    jump : float
+        When the machine jumped [s]; infinite if it did not.
+    changes : sequence of float
+        When the warning rose and fell in turns [s], before the jump or the end.
+    """
+    about = f"{case.ramp.start:6.1f} rad/s {case.ramp.acceleration:+6.2f} rad/s2"
+    if np.isfinite(case.fold):
+        about += f", fold after {case.time(case.fold):5.2f} s by {case.change:+.2f}"
+    about += f", jump after {jump:5.2f} s" if np.isfinite(jump) else ", no jump"
+    if changes:
+        about += ", warning " + ", ".join(f"{one:.2f}" for one in changes)
+    if np.isinf(jump) and abs(case.change) < LEAST:
+        return Outcome("not judged: too slight a jump", about)
+    if np.isinf(jump):
+        return Outcome("false warning" if changes else "rightly silent", about)
+    if len(changes) > 2:
+        return Outcome("chatter", about)
+    if not (changes and jump - changes[0] >= AHEAD):
+        return Outcome("missed", about)
+    return Outcome("warned" if len(changes) == 1 else "warned, gone", about)
+
+
+def score(counts: Counter[str]) -> Iterator[str]:
+    """Yield the lines of the result."""
+    for verdict, count in counts.most_common():
+        yield f"{count:5} {verdict}"
+    warned = counts["warned"] + counts["warned, gone"]
+    jumps = warned + counts["missed"] + counts["chatter"]
+    if jumps:
+        share = 100.0 * warned / jumps
+        yield f"{jumps} jumps, {share:.1f} % of them warned of at least {AHEAD:g} s ahead"
+    quiet = counts["rightly silent"] + counts["false warning"]
+    yield f"{quiet} runs without a jump, {counts['false warning']} of them with a warning"
+
+
+def arguments(about: str, runs: int) -> argparse.Namespace:
+    """What the command line asks for; a number that is not allowed is refused."""
+    parser = argparse.ArgumentParser(description=about)
+    parser.add_argument("--runs", type=int, default=runs, help="how many runs")
+    parser.add_argument("--first", type=int, default=1, help="number of the first")
+    parser.add_argument("--seed", type=int, default=1, help="of all of them")
+    given = parser.parse_args()
+    for name, least in (("runs", 1), ("first", 0), ("seed", 0)):
+        if getattr(given, name) < least:
+            parser.error(f"--{name}: {getattr(given, name)} is not allowed, at least {least} is")
+    return given
+
+
+def main() -> int:
+    """Run and print; the exit code is 1 where a run was missed, chattered or wrongly warned."""
+    given = arguments(__doc__.partition("\n")[0], runs=200)
+    counts = Counter[str]()
+    last = given.first + given.runs - 1
+    for number in range(given.first, last + 1):
+        begin = time.process_time()
+        verdict, about = judge(np.random.default_rng([given.seed, number]))
+        counts[verdict] += 1
+        took = time.process_time() - begin
+        print(f"{number:4} of {last}  {verdict:14}  {about}  ({took:.0f} s)", flush=True)
+    print("\n".join(score(counts)))
+    return int(any(counts[verdict] for verdict in WRONG))
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())
