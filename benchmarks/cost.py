@@ -15,14 +15,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from sfd_hbm_ros.film import ShortFilm
 from sfd_hbm_ros.hbm import (
     Equations,
     HarmonicBalance,
     Harmonics,
     NewtonOptions,
+    corrector,
     floquet,
     solve,
 )
@@ -43,7 +42,7 @@ STAGES: tuple[tuple[str, Any, str], ...] = (
     ("transforms and Jacobian", Equations, "linearise"),
     ("transforms and Jacobian, slope by the speed", Equations, "slope_by_speed"),
     ("eccentricity", Equations, "eccentricity"),
-    ("linear solves", np.linalg, "solve"),
+    ("linear solves", corrector, "_solved"),
     ("stability", floquet, "stability"),
 )
 

@@ -22,7 +22,7 @@ INSET = 0.001  # of the critical speed, by which a run keeps from the ends of th
 RATES = 0.002, 0.006  # of the critical speed, 1/s
 APPROACH = 4.0  # s of a run before the jump that the curve shows
 SIDE_REVOLUTIONS = FEWEST + 2  # on each side of a jump in the fastest run
-BEYOND = 0.03  # part of the speed by which a run goes on after it
+BEYOND = 0.06  # part of the speed by which a run goes on after it, if no jump comes before
 LOADED = 0.1  # part of the machines that have gravity, a side load and uneven bearings
 HARMONICS = 5  # of these; the others move in circles
 

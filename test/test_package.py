@@ -17,7 +17,7 @@ MANIFEST = ET.parse(ROOT / "package.xml").getroot()
 KEYED = ("matplotlib", "numba", "numpy", "scipy", "yaml")
 ROSDEP_KEYS = {name: f"python3-{name}" for name in KEYED}
 PAPER = str(ROOT / "config" / "paper_rotor.yaml")
-HEAVY = ("matplotlib", "scipy.optimize", "scipy.interpolate", "scipy.sparse", "dask", "pyarrow")
+HEAVY = ("matplotlib", "scipy.optimize", "scipy.interpolate", "dask", "pyarrow")
 ROS_MODULE = re.compile(r"rclpy|rcl_interfaces|ament_index_python|launch\w*|\w+_(msgs|srvs)")
 
 

@@ -10,8 +10,8 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
+from sfd_hbm_ros.hbm.bracketing import zero_between
 from sfd_hbm_ros.response.curves.judged import CurveBranch
 from sfd_hbm_ros.response.curves.place import Place
 
@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 _NEIGHBOURS = 2  # on either side
 _BESIDE = (0.05, 20.0)  # distances of two neighbours that are of use, as parts of the stretch
+_ACCURACY = 1e-12  # of an arc, as a part of the stretch
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,4 +96,4 @@ def _arc(factors: Array, value: float) -> float:
     first, last = beyond(0.0), beyond(1.0)
     if first * last >= 0.0:  # a point's own value, but for rounding
         return 0.0 if abs(first) < abs(last) else 1.0
-    return float(brentq(beyond, 0.0, 1.0))
+    return zero_between(beyond, 0.0, 1.0, _ACCURACY)
