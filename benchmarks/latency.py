@@ -5,7 +5,8 @@ first when the response curve is there and nothing else is to be done, and then 
 computed, since a value of the machine is changed every other second. A speed is lost where a newer
 one came before it was the predictor's turn. Printed are the times until the predictions with these
 stamps had arrived, the processor time that the predictor took, the time from a change of the
-machine to its curve, and the predictor's memory at the end.
+machine to its curve, and the predictor's memory at the end. The first row tells how far the
+computer itself is late: by how much a sleep of a period overruns, with nothing else to be done.
 
     . scripts/environment.sh; python3 -m benchmarks.latency --rate 50 200 --seconds 20
 """
@@ -77,12 +78,13 @@ def _start(harmonics: int) -> subprocess.Popen[bytes]:
 def _lines(stopwatch: Stopwatch, pid: int, rates: list[float], seconds: float) -> Iterator[str]:
     """Measure, and yield the lines of the table as they come."""
     yield "speeds                    p50     p99     max [ms]   lost        processor [%]"
+    yield _row("the computer itself", _overruns(1.0 / max(rates), seconds))
     for rate in rates:
         for name, between in (("idle", _nothing), ("computing", _changing(stopwatch))):
             stopwatch.settle()
             before = _used(pid)
             times = stopwatch.run(rate, seconds, between)
-            yield _row(f"{rate:3.0f} Hz, {name}", times, before, _used(pid))
+            yield _row(f"{rate:3.0f} Hz, {name}", times) + _load(before, _used(pid))
     waits = []
     for _ in range(CURVES):
         stopwatch.settle()
@@ -92,13 +94,27 @@ def _lines(stopwatch: Stopwatch, pid: int, rates: list[float], seconds: float) -
     yield f"memory: {_used(pid).memory:.0f} MiB"
 
 
-def _row(name: str, times: NDArray[np.float64], before: Usage, after: Usage) -> str:
+def _overruns(period: float, seconds: float) -> NDArray[np.float64]:
+    """By how much sleeps of a period [s] take longer."""
+    overruns = []
+    for _ in range(round(seconds / period)):
+        start = time.perf_counter()
+        time.sleep(period)
+        overruns.append(time.perf_counter() - start - period)
+    return np.array(overruns)
+
+
+def _row(name: str, times: NDArray[np.float64]) -> str:
     arrived = 1e3 * times[np.isfinite(times)]
     lost = f"{len(times) - len(arrived)} of {len(times)}"
     numbers = [*np.percentile(arrived, [50, 99]), arrived.max()] if arrived.size else [np.nan] * 3
-    load = 100.0 * (after.cpu - before.cpu) / (after.time - before.time)
     columns = "".join(f"{number:8.1f}" for number in numbers)
-    return f"{name:20}{columns}     {lost:>13}{load:13.1f}"
+    return f"{name:20}{columns}     {lost:>13}"
+
+
+def _load(before: Usage, after: Usage) -> str:
+    load = 100.0 * (after.cpu - before.cpu) / (after.time - before.time)
+    return f"{load:13.1f}"
 
 
 def _nothing() -> None:
