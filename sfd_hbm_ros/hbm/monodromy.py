@@ -56,31 +56,38 @@ def rates(
     w, m = frequency, rotor.size
     mass, damping, stiffness = w * w * rotor.M, w * (rotor.C + speed * rotor.G), rotor.K
     terms = [
-        (-film.by_position, -w * film.by_velocity, -w * w * film.by_acceleration) for film in films
+        FilmSlopes(-film.by_position, -w * film.by_velocity, -w * w * film.by_acceleration)
+        for film in films
     ]
     if turning:
         stiffness, damping = _turned(stiffness, damping, mass, turning / w)
-        terms = [(*_turned(*film, turning / w), film[2]) for film in terms]
-    journals, places = rotor.journals.ravel(), [slice(2 * j, 2 * j + 2) for j in range(len(films))]
-    samples, n = len(terms[0][0]), len(journals)
-    rows, film_mass = np.zeros((samples, n, 2 * m)), np.zeros((samples, n, n))
-    for (by_position, by_rate, by_acceleration), place, (x, y) in zip(
-        terms, places, rotor.journals, strict=True
-    ):
-        rows[:, place, x : y + 1] = by_position
-        rows[:, place, m + x : m + y + 1] = by_rate
-        film_mass[:, place, place] = by_acceleration
+        terms = [FilmSlopes(*_turned(*term, turning / w), term.by_acceleration) for term in terms]
+    rows, film_mass = _film_rows(rotor, terms)
+    journals = rotor.journals.ravel()
     # the films add to the journals' rows alone: the mass is inverted by Woodbury's formula
     rotor_part = np.linalg.solve(mass, np.hstack([stiffness, damping]))
     reach = np.linalg.solve(mass, np.eye(m)[:, journals])
     film_part = np.linalg.solve(
-        np.eye(n) + film_mass @ reach[journals], rows - film_mass @ rotor_part[journals]
+        np.eye(len(journals)) + film_mass @ reach[journals],
+        rows - film_mass @ rotor_part[journals],
     )
-    matrices = np.zeros((samples + 1, 2 * m, 2 * m))
+    matrices = np.zeros((len(rows) + 1, 2 * m, 2 * m))
     matrices[:, :m, m:] = np.eye(m)
     matrices[:-1, m:] = -rotor_part - reach @ film_part
     matrices[-1] = matrices[0]
     return matrices
+
+
+def _film_rows(rotor: RotorModel, terms: Sequence[FilmSlopes]) -> tuple[Array, Array]:
+    """What the films add to the journals' n rows: by (q, q'), (samples, n, 2m), and by q''."""
+    samples, n, m = len(terms[0].by_position), 2 * len(terms), rotor.size
+    rows, mass = np.zeros((samples, n, 2 * m)), np.zeros((samples, n, n))
+    for damper, (term, (x, y)) in enumerate(zip(terms, rotor.journals, strict=True)):
+        own = slice(2 * damper, 2 * damper + 2)
+        rows[:, own, x : y + 1] = term.by_position
+        rows[:, own, m + x : m + y + 1] = term.by_velocity
+        mass[:, own, own] = term.by_acceleration
+    return rows, mass
 
 
 def _turned(stiffness: Array, damping: Array, mass: Array, ratio: float) -> tuple[Array, Array]:
