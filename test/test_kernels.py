@@ -1,5 +1,6 @@
 """Compiled kernels: kept on disk where that is possible, and of use where it is not."""
 
+import gc
 import importlib
 import inspect
 import os
@@ -64,6 +65,16 @@ def test_kernels_call_nothing_of_other_files() -> None:
             assert {one.__module__ for one in called if is_compiled(one)} <= {name}
             checked += 1
     assert checked > 20
+
+
+def test_what_is_loaded_is_spared_by_the_garbage_collector() -> None:
+    gc.unfreeze()
+    try:
+        kernels.load_kernels()
+        assert gc.get_freeze_count() > 10_000
+        assert len(gc.get_objects()) < 1_000
+    finally:
+        gc.unfreeze()
 
 
 def is_compiled(item: object) -> bool:

@@ -1,8 +1,7 @@
-"""A lifecycle node that leaves the executor and the garbage collector little to do."""
+"""A lifecycle node that leaves the executor little to do."""
 
 from __future__ import annotations
 
-import gc
 from typing import Any
 
 from rclpy.event_handler import PublisherEventCallbacks
@@ -31,13 +30,3 @@ class LeanNode(LifecycleNode):
 def _without_events(options: dict[str, Any]) -> dict[str, Any]:
     """Options of a publisher, without events unless they are asked for."""
     return {"event_callbacks": PublisherEventCallbacks(use_default_callbacks=False), **options}
-
-
-def spare_what_is_loaded() -> None:
-    """Keep the garbage collector from looking through all that there is, now and for good.
-
-    It did so now and then, for 0.1 s, in which nothing was predicted: the modules of numpy, scipy
-    and rclpy have some 150 000 objects.
-    """
-    gc.collect()
-    gc.freeze()

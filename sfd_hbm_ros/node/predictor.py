@@ -16,7 +16,7 @@ from sfd_hbm_ros.node import diagnostics, guard
 from sfd_hbm_ros.node.changes import Changes
 from sfd_hbm_ros.node.curves import Curves
 from sfd_hbm_ros.node.inputs import Drops
-from sfd_hbm_ros.node.lean_node import LeanNode, spare_what_is_loaded
+from sfd_hbm_ros.node.lean_node import LeanNode
 from sfd_hbm_ros.node.measurement import Measurement
 from sfd_hbm_ros.node.memory import Memory
 from sfd_hbm_ros.node.oil_feed import OilFeed
@@ -179,7 +179,6 @@ def main() -> int:
 
 
 def _spin(predictor: Predictor) -> int:
-    spare_what_is_loaded()
     try:
         guard.spin(predictor, predictor.caught)
     finally:

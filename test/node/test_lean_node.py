@@ -1,13 +1,11 @@
 """What the predictor's node leaves undone, so that its callbacks come at once."""
 
-import gc
-
 from .graph import JointState, Time, speed_message  # first of these, as it skips without ROS
 
 # isort: split
 from rclpy.event_handler import PublisherEventCallbacks
 
-from sfd_hbm_ros.node.lean_node import LeanNode, spare_what_is_loaded
+from sfd_hbm_ros.node.lean_node import LeanNode
 
 
 def test_publishers_have_no_events_but_those_asked_for(graph):
@@ -26,13 +24,3 @@ def test_publishers_have_no_events_but_those_asked_for(graph):
         assert came[0].velocity[0] == 2.0
     finally:
         node.destroy_node()
-
-
-def test_what_is_loaded_is_spared_by_the_garbage_collector():
-    before = gc.get_freeze_count()
-    try:
-        spare_what_is_loaded()
-        assert gc.get_freeze_count() > before + 10_000
-        assert len(gc.get_objects()) < 1_000
-    finally:
-        gc.unfreeze()
