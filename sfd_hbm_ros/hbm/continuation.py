@@ -68,7 +68,7 @@ class Branch:
         self.stop: Stop | None = None
         self._x = x
         width = self.high - self.low
-        self.corrector = Corrector(family, start, width, self.options.iterations, newton)
+        self.corrector = Corrector(family, start, width, self.options, newton)
         towards_end = np.zeros(self.corrector.scale.size)
         towards_end[-1] = np.sign(end - start)
         self._direction = towards_end if direction is None else direction

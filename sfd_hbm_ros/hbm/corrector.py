@@ -36,8 +36,8 @@ class Corrector:
         The equations.
     start, width : float
         A value of the parameter, and the width of its range.
-    iterations : int
-        Corrector steps that a point may take.
+    options : ContinuationOptions
+        Settings, of which the number of iterations counts here.
     newton : NewtonOptions
         Tolerance of the residual.
 
@@ -52,10 +52,11 @@ class Corrector:
         family: Family,
         start: float,
         width: float,
-        iterations: int = ContinuationOptions.iterations,
+        options: ContinuationOptions | None = None,
         newton: NewtonOptions = DEFAULTS,
     ) -> None:
-        self._family, self._iterations, self._newton = family, iterations, newton
+        self._family, self._newton = family, newton
+        self._iterations = (options or ContinuationOptions()).iterations
         self.scale: Array = np.append(family.at(start).scale, width)
 
     def known(self, x: Array, value: float, direction: Array, iterations: int = 0) -> Point:

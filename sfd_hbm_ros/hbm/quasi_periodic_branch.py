@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.balance import HarmonicBalance
-from sfd_hbm_ros.hbm.corrector import Corrector
 from sfd_hbm_ros.hbm.family import FamilyMember
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.options import ContinuationOptions
@@ -25,13 +24,12 @@ from sfd_hbm_ros.hbm.quasi_periodic_response import (
     standing_response,
 )
 from sfd_hbm_ros.hbm.solution import Solution
-from sfd_hbm_ros.hbm.switching import SwitchedBranch
+from sfd_hbm_ros.hbm.switching import SwitchedBranch, point_beside
 from sfd_hbm_ros.rotor import is_axisymmetric
 
 Array = NDArray[np.float64]
 
 _MULTIPLES = Harmonics(15)  # of the new frequency; the film is stiff where a circle is unstable
-_STEPS = (0.02, 0.01, 0.005, 0.05)  # of the clearance, with which the branch is sought
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,14 +109,10 @@ def quasi_periodic_branch(
             "loads, so that its orbits are circles"
         )
     family, root = _departure(balance, circle, harmonics)
-    corrector = Corrector(family, circle.speed, bounds[1] - bounds[0])
     absent = np.ones(root.x.size, dtype=bool)
     absent[: balance.clearances.size] = absent[-1] = False
-    for step in _STEPS:
-        first = corrector.corrected(root, step)
-        if first is not None and bounds[0] <= first.value <= bounds[1]:
-            return QuasiPeriodicBranch(family, first, absent, bounds, options)
-    return None
+    first = point_beside(family, root, bounds, options)
+    return QuasiPeriodicBranch(family, first, absent, bounds, options) if first else None
 
 
 def _departure(

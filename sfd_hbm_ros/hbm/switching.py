@@ -110,11 +110,22 @@ def switch(
         return None
     tangent = np.append(null_vector(family.at(value), x, absent), 0.0)
     root = Point(value, x, tangent, solution.eccentricity_max, 0)
-    corrector = Corrector(family, value, bounds[1] - bounds[0])
+    first = point_beside(family, root, bounds, options)
+    return SwitchedBranch(family, first, absent, bounds, options) if first else None
+
+
+def point_beside(
+    family: Family,
+    root: Point,
+    bounds: tuple[float, float],
+    options: ContinuationOptions | None = None,
+) -> Point | None:
+    """A point of the branch that leaves a root along its tangent, within the bounds, if any."""
+    corrector = Corrector(family, root.value, bounds[1] - bounds[0], options)
     for step in _STEPS:
-        first = corrector.corrected(root, step)
-        if first is not None and bounds[0] <= first.value <= bounds[1]:
-            return SwitchedBranch(family, first, absent, bounds, options)
+        point = corrector.corrected(root, step)
+        if point is not None and bounds[0] <= point.value <= bounds[1]:
+            return point
     return None
 
 

@@ -55,12 +55,13 @@ class Memory:
         self._failed = ""
         self._saved: tuple[object, ...] = ()
         self._saved_at = 0.0
+        self._written: State | None = None
         self._thread = ThreadPoolExecutor(1)
         self._writing: Future[None] | None = None
         operation.after_prediction.append(self._take)
         watch.after_change.append(self._look)
         # for what changed while a write was under way, when no speed comes after it
-        node.create_timer(_PERIOD, self._catch_up, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        node.create_timer(_PERIOD, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def restore(self, model: Model) -> None:
         """Begin with what is in the state file; one that is of no use is reported."""
@@ -138,17 +139,12 @@ class Memory:
         self._look()
 
     def _look(self) -> None:
-        """Save the state if something important has changed, or a second has passed."""
+        """Save the state if something important has changed, or it is new and a second passed."""
         self._collect()
         if self._writing is not None:
             return
-        if self._key != self._saved or time.monotonic() - self._saved_at >= _PERIOD:
-            self._write()
-
-    def _catch_up(self) -> None:
-        """Save the state if something important has changed."""
-        self._collect()
-        if self._writing is None and self._key != self._saved:
+        due = time.monotonic() - self._saved_at >= _PERIOD
+        if self._key != self._saved or (due and self._state is not self._written):
             self._write()
 
     @property
@@ -164,7 +160,7 @@ class Memory:
         model, now = self._operation.model, time.monotonic()
         if not self._path or model is None or self._state is None:
             return
-        self._saved, self._saved_at = self._key, now
+        self._saved, self._saved_at, self._written = self._key, now, self._state
         state = replace(self._state, alarm=self._watch.alarm.to_dict(now))
         self._writing = self._thread.submit(save_state, self._path, model.machine, state)
 

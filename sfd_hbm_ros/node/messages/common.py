@@ -1,4 +1,4 @@
-"""The messages of the nodes, built and read in this file and its neighbours *_messages.
+"""The messages of the nodes, built and read in this file and its neighbours.
 
 JointState is used because it is the stamped, named list of doubles that PlotJuggler, Foxglove and
 rosbag2 read without a package of our own; a typed interface package can replace it here.
