@@ -15,6 +15,7 @@ from sfd_hbm_ros.hbm.family import Family, FamilyMember
 from sfd_hbm_ros.hbm.hermite import along_branch
 from sfd_hbm_ros.hbm.options import DEFAULTS, ContinuationOptions, NewtonOptions
 from sfd_hbm_ros.hbm.points import Point
+from sfd_hbm_ros.hbm.time_limit import check_time_limit
 from sfd_hbm_ros.rotor import ResonanceError
 
 Array = NDArray[np.float64]
@@ -84,6 +85,7 @@ class Corrector:
         unknowns, before = along_branch([point, *others], self.scale)(step), np.inf
         distance = point.tangent @ self.scaled(point) + step
         for iteration in range(self._iterations + 1):
+            check_time_limit()
             value, x = unknowns[-1] * self.scale[-1], unknowns[:-1] * self.scale[:-1]
             equations = self._at(value)
             if equations.eccentricity(x) >= _OUTSIDE:

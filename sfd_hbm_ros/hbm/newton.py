@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
 from sfd_hbm_ros.hbm.options import DEFAULTS, NewtonOptions
+from sfd_hbm_ros.hbm.time_limit import check_time_limit
 
 Array = NDArray[np.float64]
 
@@ -84,6 +85,7 @@ def newton(system: System, x: Array, options: NewtonOptions = DEFAULTS) -> Newto
             break
         allowed = part = system.largest_step(x, step)
         while part > options.shortest_step * allowed:
+            check_time_limit()
             residual, jacobian = system.linearise(x + part * step)
             norm = float(np.linalg.norm(residual)) / scale
             if norm < residuals[-1] * (1.0 - _DECREASE * part):

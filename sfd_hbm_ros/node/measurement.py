@@ -104,6 +104,9 @@ class Measurement:
         return tracked
 
     def _remember(self, prediction: Prediction, stamp: int) -> None:
+        back = (self._predicted[-1][0] - stamp) * 1e-9 if self._predicted else 0.0
+        if back > self._parameters["stale_after"]:
+            self._forget()  # as the clock was set back
         if prediction.tracked is not None:
             self._predicted.append((stamp, prediction.tracked))
 

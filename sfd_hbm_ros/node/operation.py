@@ -183,7 +183,7 @@ class Operation:
         stamp, speed = self._pending.take(time.monotonic()), self.speed.value
         if self.silence or self.model is None or stamp is None or speed is None:
             return
-        self.prediction = prediction = self.model.predict(speed)
+        self.prediction = prediction = self.model.predict(speed, stamp * 1e-9)
         self.predictions += 1
         self.failures += prediction.failed
         header = Time(nanoseconds=stamp), self._parameters["frame_id"]

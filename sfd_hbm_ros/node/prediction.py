@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -14,6 +15,9 @@ from sfd_hbm_ros.response.tracking.tracked import Tracked
 from sfd_hbm_ros.response.tracking.tracker import Tracker
 
 AT_REST = "the rotor is at rest: there is nothing to predict"
+
+PATIENCE = 0.4
+"""Processor time that a prediction may take [s], lest the heartbeat stop meanwhile."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +85,7 @@ class Model:
         self.harmonics = Harmonics(highest)
         self._loads: dict[str, Load] = {}
         self._balance: HarmonicBalance | None = None
-        self.tracker = Tracker(self._build())
+        self.tracker = Tracker(self._build(), PATIENCE)
 
     @property
     def loads(self) -> dict[str, tuple[float, float]]:
@@ -127,10 +131,17 @@ class Model:
         assert self._balance is not None
         return self._balance
 
-    def predict(self, speed: float) -> Prediction:
-        """Follow the machine to a speed [rad/s].
+    def predict(self, speed: float, measured_at: float = math.nan) -> Prediction:
+        """Follow the machine to a speed.
 
         Whatever goes wrong is told by the prediction: no exception is raised.
+
+        Parameters
+        ----------
+        speed : float
+            Rotor speed [rad/s].
+        measured_at : float, optional
+            When it was measured [s].
         """
         if speed == 0.0:
             return Prediction(speed, self._unknown(), False, AT_REST)
@@ -142,7 +153,7 @@ class Model:
         except Exception as error:  # a machine beyond what numbers can hold
             reason = f"the solver gave up: {type(error).__name__}: {error}"
             return Prediction(speed, self._unknown(), True, reason)
-        tracked = self.tracker.predict(speed)
+        tracked = self.tracker.predict(speed, measured_at)
         solution = tracked.solution
         begun = solution.converged or solution.residuals
         return Prediction(

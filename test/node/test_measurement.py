@@ -49,13 +49,16 @@ def branch(predictor: Remote) -> float:
 
 
 def test_the_first_orbit_settles_the_branch(predictor, measured):
+    """Which is assumed before depends on what came first, the curve or a speed."""
     lower, upper = orbits(BOTH)
-    assumed = settle_at(predictor, BOTH)
-    assert assumed["damper_1/max"] == pytest.approx(lower, abs=1e-8)
+    assumed = settle_at(predictor, BOTH)["damper_1/max"]
+    on_lower = assumed == pytest.approx(lower, abs=1e-8)
+    assert on_lower or assumed == pytest.approx(upper, abs=1e-8)
     assert branch_name(predictor) == "unknown"
-    report(measured, orbit(UPPER_ONLY))
-    assert branch(predictor) == pytest.approx(upper, abs=1e-8)
-    predictor.graph.until(lambda: branch_name(predictor) == "upper", "the branch is settled")
+    report(measured, orbit(UPPER_ONLY if on_lower else LOWER_ONLY))
+    assert branch(predictor) == pytest.approx(upper if on_lower else lower, abs=1e-8)
+    name = "upper" if on_lower else "lower"
+    predictor.graph.until(lambda: branch_name(predictor) == name, "the branch is settled")
 
 
 def branch_name(predictor: Remote) -> str:

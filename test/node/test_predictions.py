@@ -109,6 +109,18 @@ def test_load_of_a_station_replaces_its_last_one(predictor):
     check(answer, solved(350.0, last))
 
 
+def test_load_that_nothing_can_carry_is_told_and_taken_back(predictor):
+    predictor.predict(350.0)
+    stamp = predictor.now()
+    predictor.push("disk_3", (0.0, -1e5), stamp)
+    eccentricity, harmonics = predictor.answer(stamp)
+    assert all(math.isnan(value) for value in (*eccentricity.values(), *harmonics.values()))
+    predictor.until_status("Solver", ERROR, "no solution was found within 0.4 s of processor time")
+    stamp = predictor.now()
+    predictor.push("disk_3", (0.0, 0.0), stamp)
+    check(predictor.answer(stamp), solved(350.0))
+
+
 def test_load_at_an_unknown_station_is_refused(predictor):
     solution = solved(350.0)
     check(predictor.predict(350.0), solution)

@@ -1,13 +1,14 @@
 """The operating point without a current curve: followed along its branch, or where it jumps to."""
 
 from sfd_hbm_ros.hbm import HarmonicBalance
+from sfd_hbm_ros.hbm.time_limit import TimeLimitError, time_limit
 from sfd_hbm_ros.response.tracking.following import Followed, follow, holds
 from sfd_hbm_ros.response.tracking.guide import Guide
 from sfd_hbm_ros.response.tracking.operating_point import OperatingPoint, landed, placed
 from sfd_hbm_ros.response.tracking.way import Way
 
 
-def pursued(guide: Guide, last: OperatingPoint, speed: float) -> OperatingPoint:
+def pursued(guide: Guide, last: OperatingPoint, speed: float, patience: float) -> OperatingPoint:
     """Follow a machine to a speed [rad/s] and to what it has become meanwhile.
 
     Parameters
@@ -18,8 +19,15 @@ def pursued(guide: Guide, last: OperatingPoint, speed: float) -> OperatingPoint:
         Where it was, and what it was then.
     speed : float
         The speed.
+    patience : float
+        Processor time that following it may take [s]; where that is not enough, it is sought
+        where a machine lands that jumps.
     """
-    solution, part, orientation = _followed(guide, last, speed)
+    try:
+        with time_limit(patience):
+            solution, part, orientation = _followed(guide, last, speed)
+    except TimeLimitError:
+        solution, part, orientation = Followed(None, 0.0, None)
     if solution and part == 1.0:
         point = placed(guide, solution, orientation)
         if point.place or not guide.current or holds(point.balance, solution):

@@ -6,18 +6,32 @@ parameters, either way. The response curve guides: it says where the folds are, 
 Newton's method starts. Without a current one the response is followed by arclength where it moves
 far, so that a fold shows. A machine that moves quasi-periodically about an unstable circular orbit
 has that circle as its solution, its place on the quasi-periodic branch, and jumps at its end.
+What followed a speed that was measured wrongly is forgotten when the next one shows it.
 """
+
+import math
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Solution
+from sfd_hbm_ros.hbm.time_limit import TimeLimitError, time_limit
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.place import Place
+from sfd_hbm_ros.response.tracking.excursion import Excursion
 from sfd_hbm_ros.response.tracking.guide import Guide
 from sfd_hbm_ros.response.tracking.operating_point import OperatingPoint, begun, placed
 from sfd_hbm_ros.response.tracking.pursuit import pursued
 from sfd_hbm_ros.response.tracking.tracked import BranchName, Tracked, branch_name, no_solution
 from sfd_hbm_ros.rotor import ResonanceError
+
+
+class _Known(NamedTuple):
+    """What a tracker knows of its machine."""
+
+    last: OperatingPoint | None = None
+    settled: bool = False  # whether the history tells the branch
+    origin: float | None = None  # speed from which a response not settled was followed
 
 
 class Tracker:
@@ -31,19 +45,22 @@ class Tracker:
     ----------
     balance : HarmonicBalance
         The machine and the harmonics.
+    patience : float
+        Processor time that the search for a response may take [s]; where it is over, a prediction
+        has no solution. So it is after a great change for which there is no curve yet.
     """
 
-    def __init__(self, balance: HarmonicBalance) -> None:
+    def __init__(self, balance: HarmonicBalance, patience: float = math.inf) -> None:
         self._guide = Guide(balance)
-        self._last: OperatingPoint | None = None
+        self._patience = patience
         self._beside: tuple[Place, Solution | None] | None = None  # the other stable response
-        self._settled = False
-        self._origin: float | None = None  # speed from which a response not settled was followed
+        self._known = _Known()
+        self._excursion = Excursion[_Known]()
 
     @property
     def settled(self) -> bool:
         """Whether the history tells on which branch the machine is."""
-        return self._settled
+        return self._known.settled
 
     @property
     def current(self) -> bool:
@@ -58,22 +75,22 @@ class Tracker:
     @property
     def place(self) -> Place | None:
         """Where on the curve the machine is; None where that is not known."""
-        return self._last.place if self._last else None
+        return self._known.last.place if self._known.last else None
 
     def change(self, balance: HarmonicBalance) -> None:
         """Go on with other loads, parameters or harmonics of the machine."""
         self._guide = Guide(balance, self._guide.curve)
-        self._beside = self._origin = None
+        self._beside = None
+        self._learn(origin=None)
 
     def adopt(self, curve: ResponseCurve) -> None:
         """Be guided by a curve over the speed, current or outdated, in place of any other."""
         self._guide = guide = Guide(self._guide.balance, curve)
         self._beside = None
-        if self._last is not None:
-            self._last = self._last._replace(place=guide.match(self._last.solution))
-        if guide.current and self._origin is not None:
-            stable = [place for place in guide.places(self._origin) if place.stable]
-            self._settled = self._settled or len(stable) == 1
+        self._known = self._replaced(self._known)
+        if guide.current and self._known.origin is not None:
+            stable = [place for place in guide.places(self._known.origin) if place.stable]
+            self._learn(settled=self.settled or len(stable) == 1)
 
     def settle(self, solution: Solution) -> None:
         """Know that the machine is on a response, which was measured or restored.
@@ -85,16 +102,16 @@ class Tracker:
         """
         if not solution.converged:
             raise ValueError(f"there is no solution at {solution.speed} rad/s to settle on")
-        self._last = placed(self._guide, solution)
-        self._settled = True
+        self._learn(last=placed(self._guide, solution), settled=True)
+        self._excursion = Excursion()
 
     def forget(self) -> None:
         """Begin anew: what the machine did meanwhile is not known."""
-        self._last = self._beside = self._origin = None
-        self._settled = False
+        self._known, self._beside = _Known(), None
+        self._excursion = Excursion()
 
-    def predict(self, speed: float) -> Tracked:
-        """Follow the machine to a speed [rad/s].
+    def predict(self, speed: float, time: float = math.nan) -> Tracked:
+        """Follow the machine to a speed.
 
         On a current curve this takes one run of Newton's method, two where there is another
         stable response, whether the machine jumps or not. Without one it takes a run for each
@@ -104,29 +121,45 @@ class Tracker:
 
         No exception is raised. Where there is no solution, or the speed is not positive and
         finite, the solution says so, and the next prediction starts from the last that converged.
+
+        Parameters
+        ----------
+        speed : float
+            Rotor speed [rad/s].
+        time : float, optional
+            When it was measured [s]. With it, speeds that leap away and are back at once are
+            taken for wrong, and where they led is forgotten.
         """
+        before = self._excursion.returned(speed, time, self._known)
+        if before is not None:
+            self._known = self._replaced(before)
         try:
             with np.errstate(all="ignore"):  # where numbers overflow there is no solution
-                point = self._advanced(speed)
+                with time_limit(self._patience):
+                    point = self._advanced(speed)
                 if not point.solution.converged:
                     return Tracked(point.solution)
-                self._last = point
+                self._learn(last=point)
                 return self._tracked(point)
         except ResonanceError as error:
             return Tracked(no_solution(self._guide.balance, speed, str(error)))
+        except TimeLimitError:
+            reason = f"no solution was found within {self._patience:g} s of processor time"
+            return Tracked(no_solution(self._guide.balance, speed, reason))
         except Exception as error:  # a speed or a machine beyond what numbers can hold
             reason = f"{type(error).__name__}: {error}"
             return Tracked(no_solution(self._guide.balance, speed, reason))
 
     def _advanced(self, speed: float) -> OperatingPoint:
-        if self._last is None:
-            self._origin = speed
+        last = self._known.last
+        if last is None:
+            self._learn(origin=speed)
             return begun(self._guide, speed)
-        travelled = self._travelled(self._last, speed)
+        travelled = self._travelled(last, speed)
         if travelled:
             return travelled
-        self._origin = self._origin or speed
-        return pursued(self._guide, self._last, speed)
+        self._learn(origin=self._known.origin or speed)
+        return pursued(self._guide, last, speed, 0.5 * self._patience)
 
     def _travelled(self, last: OperatingPoint, speed: float) -> OperatingPoint | None:
         """The response at the end of a journey along the current curve, if it leads there."""
@@ -143,8 +176,8 @@ class Tracker:
         solution, place = point.solution, point.place
         others = self._guide.others(solution.speed, place, solution.eccentricity_max)
         if self.current and place and not others:
-            self._settled = True
-        known = place is not None and (self._settled or not others)
+            self._learn(settled=True)
+        known = place is not None and (self.settled or not others)
         name = branch_name(solution, others) if known else BranchName.UNKNOWN
         other = self._solved_beside(others[0]) if place and others else None
         return Tracked(solution, name, point.jumped, point.stable, place, self.current, other)
@@ -156,3 +189,14 @@ class Tracker:
             return None  # it is not sought again and again where an outdated curve is wrong
         self._beside = place, self._guide.solved(place, beside, known)
         return self._beside[1]
+
+    def _learn(self, **changes: Any) -> None:
+        """Change what is known."""
+        self._known = self._known._replace(**changes)
+
+    def _replaced(self, known: _Known) -> _Known:
+        """What was known, with its place on the curve of now."""
+        if known.last is None:
+            return known
+        place = self._guide.match(known.last.solution)
+        return known._replace(last=known.last._replace(place=place))
