@@ -1,4 +1,4 @@
-"""What happens to measurements on their way: noise, losses and wrong stamps. Without ROS."""
+"""What happens to measurements on their way: noise, losses, wrong speeds and stamps. No ROS."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from sfd_hbm_ros.machine.rules import Rule, integer, number
 
 _SECOND = 1_000_000_000  # ns
 _OFF = (1.0, 3600.0)  # s by which a wrong stamp lies in the past or the future
+_PULSES = (0.5, 2.0)  # times the right speed: a pulse of the keyphasor was missed, or doubled
 
 
 def _probability(about: str) -> Rule:
@@ -38,6 +39,7 @@ class DisturbanceSettings(Part):
     orbit_noise: Annotated[float, _deviation("each cosine and sine of a measured orbit", "m")] = (
         0.0
     )
+    wrong_speed: Annotated[float, _probability("bears half or twice the speed")] = 0.0
     dropout: Annotated[float, _probability("is lost")] = 0.0
     wrong_stamp: Annotated[
         float, _probability("bears a stamp of 0, or from the past or the future")
@@ -71,6 +73,8 @@ class Disturbance:
 
     def speed(self, speed: float) -> float:
         """Return a measured speed [rad/s], which is not negative."""
+        if self._random.random() < self._settings.wrong_speed:
+            speed *= self._random.choice(_PULSES)
         return max(0.0, speed + self._settings.speed_noise * self._random.standard_normal())
 
     def journals(self, journals: Mapping[str, JournalMotion]) -> dict[str, JournalMotion]:

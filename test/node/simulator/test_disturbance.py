@@ -31,6 +31,15 @@ def test_noise_of_the_speed_has_the_deviation_asked_for() -> None:
     assert speeds.std() == pytest.approx(0.5, rel=SPREAD)
 
 
+def test_wrong_speeds_are_half_and_twice_the_right_one_alike() -> None:
+    wrong = disturbance(wrong_speed=0.3)
+    speeds = np.array([wrong.speed(400.0) for _ in range(NUMBER)])
+    assert set(speeds) == {200.0, 400.0, 800.0}
+    for speed in (200.0, 800.0):
+        share = np.mean(speeds == speed)
+        assert share == pytest.approx(0.15, abs=0.36 * SPREAD)  # sqrt(0.15 0.85) = 0.36
+
+
 def test_a_measured_speed_is_not_negative() -> None:
     noisy = disturbance(speed_noise=0.5)
     assert min(noisy.speed(0.1) for _ in range(100)) == 0.0
