@@ -91,7 +91,8 @@ def random_run(rng: np.random.Generator, approach: float = APPROACH) -> Run:
         raise NoSolutionError("no stable periodic response to begin with")
     first = stable[int(rng.integers(len(stable)))]
     rate = critical * rng.uniform(*RATES)
-    leg = next(legs(curve, first, end))
+    # to the very end of the range: a fold beside the end of a run is rightly warned of
+    leg = next(legs(curve, first, highest if sign > 0.0 else lowest))
     if leg.arrived:
         fastest = SIDE * lowest**2 / (2.0 * np.pi * SIDE_REVOLUTIONS)  # lest a jump stay unseen
         return Run(curve, first, first, Ramp.between(begin, end, fastest), sign * np.inf)
