@@ -38,13 +38,10 @@ class Excursion(Generic[Known]):
             What is known of the machine up to this speed.
         """
         near = abs(speed - self._speed) < LEAP * max(abs(speed), abs(self._speed))
-        in_time = time - self._time <= RETURN
+        in_time = abs(time - self._time) <= RETURN
         before = self._known
-        if before is not None and not near and in_time:
-            return None  # still away
-        leaps = before is None and not near and in_time
-        if leaps:
-            self._known = known
-        else:
-            self._speed, self._time, self._known = speed, time, None
-        return before if near and in_time else None
+        if in_time and not near:
+            self._known = known if before is None else before  # the first leap's, of several
+            return None
+        self._speed, self._time, self._known = speed, time, None
+        return before if in_time else None
