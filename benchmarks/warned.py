@@ -109,8 +109,9 @@ def outcome(case: Run, jump: float, changes: Sequence[float]) -> Outcome:
     about += f", jump after {jump:5.2f} s" if np.isfinite(jump) else ", no jump"
     if changes:
         about += ", warning " + ", ".join(f"{one:.2f}" for one in changes)
-    if np.isinf(jump) and abs(case.change) < LEAST:
-        return Outcome("not judged: too slight a jump", about)
+    if np.isinf(jump) and np.isfinite(case.fold) and not abs(case.change) >= LEAST:
+        slight = np.isfinite(case.change)
+        return Outcome(f"not judged: {'too slight a' if slight else 'unknown'} jump", about)
     if np.isinf(jump):
         return Outcome("false warning" if changes else "rightly silent", about)
     if len(changes) > 2:

@@ -29,7 +29,9 @@ def jump_in_time(case: Run) -> float:
 
     The integration begins with a periodic response and goes on until the machine has jumped. A
     steep change far from where the curve shows a jump is one only if it is not undone on the way
-    back; of those near there the greatest is, and others belong to the flank that leads to it.
+    back; of those near there the greatest is, and others belong to the flank that leads to it. A
+    machine that leaves its response too gradually for any of them, as beside a fold that a ramp
+    passes fast, has jumped where the curve shows it if that is not undone either.
 
     Raises
     ------
@@ -48,13 +50,15 @@ def jump_in_time(case: Run) -> float:
         for jump in seen:
             if jump in at_fold or jump.speed in reversible:
                 continue
-            if _stays(integrator, whole.acceleration, marks, jump):
+            if _stays(integrator, whole.acceleration, marks, jump.speed):
                 return case.time(jump.speed)
             reversible.add(jump.speed)
         if any(until_fold[jump] <= 0.0 for jump in at_fold):
             break
-    steepest = max(at_fold, key=_change, default=None)
-    return case.time(steepest.speed) if steepest else np.inf
+    if at_fold:
+        return case.time(max(at_fold, key=_change).speed)
+    passed = np.isfinite(case.fold) and _stays(integrator, whole.acceleration, marks, case.fold)
+    return case.time(case.fold) if passed else np.inf
 
 
 def _beginning(case: Run) -> tuple[Integrator, Ramp, State]:
@@ -107,7 +111,7 @@ def _stays(
     integrator: Integrator,
     acceleration: float,
     marks: Sequence[tuple[float, State]],
-    jump: ObservedJump,
+    jump: float,
 ) -> bool:
     """Whether the machine responds otherwise when it has gone back to before a jump.
 
@@ -119,11 +123,11 @@ def _stays(
         That of the run [rad/s2].
     marks : sequence of (float, State)
         Speeds of the run [rad/s] and its state there, the last beyond the jump.
-    jump : ObservedJump
-        The jump.
+    jump : float
+        Speed of the jump [rad/s].
     """
     sign = np.sign(acceleration)
-    before = jump.speed * (1.0 - sign * SIDE)
+    before = jump * (1.0 - sign * SIDE)
     passed = [mark for mark in marks if sign * (before - mark[0]) >= 0.0]
     speed, state = passed[-1] if passed else marks[0]
     end, beyond = marks[-1]

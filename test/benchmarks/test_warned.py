@@ -18,6 +18,7 @@ from sfd_hbm_ros.response.integration.ramp import Ramp
 from sfd_hbm_ros.response.integration.transient import simulate
 
 STEEP, JUMPING = 15, 20  # a run-up without a fold, and a coast-down through one
+GRADUAL = 151  # a coast-down that leaves its response over a second
 
 
 @cache
@@ -54,6 +55,15 @@ def test_a_jump_comes_soon_after_the_fold():
     assert 1.5 < jump_in_time(run) < 2.5
 
 
+def test_a_gradual_passage_is_a_jump_where_the_fold_is_if_it_is_not_undone():
+    run = case(GRADUAL)
+    rate = abs(run.ramp.acceleration)
+    run = shorter(run, run.fold + rate, run.fold - 3.0 * rate, rate)
+    looked_at = simulate(run.curve.balance, run.fold + rate, run.fold - 3.0 * rate, rate, CIRCLES)
+    assert observed_jumps(looked_at) == []
+    assert jump_in_time(run) == pytest.approx(1.0, abs=0.01)
+
+
 def test_the_warning_comes_when_it_was_configured():
     """2.5 s before the fold, and the on-delay of 0.1 s and the period of the speeds later."""
     run = case(JUMPING)
@@ -83,9 +93,10 @@ def test_what_counts_as_what(jump, changes, verdict):
     assert outcome(case(JUMPING), jump, changes).verdict == verdict
 
 
-def test_a_fold_too_slight_to_see_in_time_is_not_judged():
-    slight = replace(case(JUMPING), change=0.01)
+def test_a_fold_that_is_not_seen_in_time_is_not_judged_where_nothing_was_to_be_seen():
+    slight, unknown = (replace(case(JUMPING), change=change) for change in (0.01, np.nan))
     assert outcome(slight, np.inf, [1.5]).verdict == "not judged: too slight a jump"
+    assert outcome(unknown, np.inf, [1.5]).verdict == "not judged: unknown jump"
 
 
 def test_score():
