@@ -30,12 +30,14 @@ class Score:
     ----------
     restored, half_written : int
         How many came back as they were, and how many were killed in the midst of writing.
-    times, processor : list of float
-        Times from a start to the first valid prediction, and processor time until then [s].
+    active, times, processor : list of float
+        Times from a start until it is active and until the first valid prediction is here, and
+        processor time until then [s].
     """
 
     def __init__(self) -> None:
         self.restored = self.half_written = 0
+        self.active: list[float] = []
         self.times: list[float] = []
         self.processor: list[float] = []
 
@@ -44,7 +46,9 @@ class Score:
         kills = cycle((victim.kill_running, victim.kill_writing, victim.kill_starting))
         for kill in islice(kills, times):
             kill()
-            self.times.append(victim.revive())
+            active, here = victim.revive()
+            self.active.append(active)
+            self.times.append(here)
             used = usage(victim.process.pid, self.times[-1])
             assert used is not None  # as it has just predicted
             self.processor.append(used.cpu)
@@ -84,6 +88,7 @@ def main() -> int:
         graph.close()
     print(f"restored: {score.restored} of {len(score.times)}")
     print(f"killed in the midst of writing: {score.half_written}")
+    print(f"from the start until it is active: {shown(score.active)}")
     print(f"from the start to the first valid prediction: {shown(score.times)}")
     print(f"processor time until then: {shown(score.processor)}")
     return int(score.restored < len(score.times))

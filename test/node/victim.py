@@ -1,5 +1,6 @@
 """A predictor of a bistable machine that is killed at bad moments and started again."""
 
+import math
 import random
 import signal
 import time
@@ -102,23 +103,29 @@ class Victim:
         self._play(self._random.uniform(0.0, 2.0))
         self._kill()
 
-    def revive(self) -> float:
-        """Start it, and return after what time the first valid prediction has come [s].
+    def revive(self) -> tuple[float, float]:
+        """Start it, and return after what times it is active and its first valid prediction here.
 
-        Meanwhile the machine has gone on to another speed.
+        Meanwhile the machine has gone on to another speed. Between the two times [s], DDS lets
+        the node and its neighbours know of one another.
         """
         self._speed = BOTH + self._random.uniform(-ELSEWHERE, ELSEWHERE)
         self._revived = self._remote.now()
         self._remote.warnings.clear()
         begin = time.monotonic()
         self.process = self._start()
+        active = math.inf
 
         def predicted() -> bool:
+            nonlocal active
             assert self.process.running, self.process.said()
+            if active == math.inf and "]: active\n" in self.process.said():
+                active = time.monotonic() - begin
             return any(value == value for value in self._predicted())
 
         self._graph.until(predicted, "a prediction", between=self._send)
-        return time.monotonic() - begin
+        here = time.monotonic() - begin
+        return min(active, here), here
 
     def lost(self) -> str:
         """Return what has not come back in words, empty where all is soon known as before."""
