@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.balance import HarmonicBalance
-from sfd_hbm_ros.hbm.monodromy import FilmSlopes, monodromy, rates
+from sfd_hbm_ros.hbm.monodromy import monodromy, rates
 from sfd_hbm_ros.hbm.solution import Solution
+from sfd_hbm_ros.hbm.turning_frame import turned_back
 from sfd_hbm_ros.rotor import RotorModel, is_axisymmetric, reduce_model
 
 Array = NDArray[np.float64]
@@ -159,21 +160,8 @@ def _rates(balance: HarmonicBalance, rotor: RotorModel, solution: Solution, samp
     w = solution.speed
     rotating = is_axisymmetric(rotor)
     angle = solution.harmonics.angles(samples)
-    turn = _turns(angle if rotating else np.zeros(samples))
     films = []
-    for film, motion in zip(balance.films, solution.journals.values(), strict=True):
-        f = film.linearise(*motion.over(samples, w))
-        slopes = f.by_position, f.by_velocity, f.by_acceleration
-        films.append(FilmSlopes(*(_seen(slope, turn) for slope in slopes)))
+    for film, journal in zip(balance.films, solution.journals.values(), strict=True):
+        motion = journal.over(samples, w)
+        films.append(film.linearise(*(turned_back(angle, motion) if rotating else motion)))
     return rates(rotor, films, w, w, w if rotating else 0.0)
-
-
-def _turns(angle: Array) -> Array:
-    """Rotations R by angles, (n, 2, 2)."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.stack([np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)], axis=-2)
-
-
-def _seen(matrix: Array, turn: Array) -> Array:
-    """The matrices R^T A R, which frames turned by R see."""
-    return turn.transpose(0, 2, 1) @ matrix @ turn

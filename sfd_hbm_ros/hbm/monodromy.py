@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from sfd_hbm_ros.film import FilmForces
 from sfd_hbm_ros.rotor import RotorModel
 
 Array = NDArray[np.float64]
@@ -19,17 +20,17 @@ _STIFF = 10.0  # norm of the Magnus series' second term beyond which the series 
 _LOBATTO = np.array([[2.0, -4.0, 2.0], [2.0, 5.0, -1.0], [2.0, 8.0, 2.0]]) / 12.0
 
 
-class FilmSlopes(NamedTuple):
-    """Derivatives of a film's force by position, velocity and acceleration, (n, 2, 2) each."""
+class _Terms(NamedTuple):
+    """What a film adds to stiffness, damping and mass at n samples, (n, 2, 2) each."""
 
-    by_position: Array
-    by_velocity: Array
-    by_acceleration: Array
+    stiffness: Array
+    damping: Array
+    mass: Array
 
 
 def rates(
     rotor: RotorModel,
-    films: Sequence[FilmSlopes],
+    films: Sequence[FilmForces],
     speed: float,
     frequency: float,
     turning: float = 0.0,
@@ -40,7 +41,7 @@ def rates(
     ----------
     rotor : RotorModel
         The rotor, of m coordinates.
-    films : sequence of FilmSlopes
+    films : sequence of FilmForces
         Those of each damper at n samples of the period; in a turning frame, as it sees them.
     speed : float
         Rotor speed [rad/s].
@@ -56,12 +57,12 @@ def rates(
     w, m = frequency, rotor.size
     mass, damping, stiffness = w * w * rotor.M, w * (rotor.C + speed * rotor.G), rotor.K
     terms = [
-        FilmSlopes(-film.by_position, -w * film.by_velocity, -w * w * film.by_acceleration)
+        _Terms(-film.by_position, -w * film.by_velocity, -w * w * film.by_acceleration)
         for film in films
     ]
     if turning:
         stiffness, damping = _turned(stiffness, damping, mass, turning / w)
-        terms = [FilmSlopes(*_turned(*term, turning / w), term.by_acceleration) for term in terms]
+        terms = [_Terms(*_turned(*term, turning / w), term.mass) for term in terms]
     rows, film_mass = _film_rows(rotor, terms)
     journals = rotor.journals.ravel()
     # the films add to the journals' rows alone: the mass is inverted by Woodbury's formula
@@ -78,15 +79,15 @@ def rates(
     return matrices
 
 
-def _film_rows(rotor: RotorModel, terms: Sequence[FilmSlopes]) -> tuple[Array, Array]:
+def _film_rows(rotor: RotorModel, terms: Sequence[_Terms]) -> tuple[Array, Array]:
     """What the films add to the journals' n rows: by (q, q'), (samples, n, 2m), and by q''."""
-    samples, n, m = len(terms[0].by_position), 2 * len(terms), rotor.size
+    samples, n, m = len(terms[0].stiffness), 2 * len(terms), rotor.size
     rows, mass = np.zeros((samples, n, 2 * m)), np.zeros((samples, n, n))
     for damper, (term, (x, y)) in enumerate(zip(terms, rotor.journals, strict=True)):
         own = slice(2 * damper, 2 * damper + 2)
-        rows[:, own, x : y + 1] = term.by_position
-        rows[:, own, m + x : m + y + 1] = term.by_velocity
-        mass[:, own, own] = term.by_acceleration
+        rows[:, own, x : y + 1] = term.stiffness
+        rows[:, own, m + x : m + y + 1] = term.damping
+        mass[:, own, own] = term.mass
     return rows, mass
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.balance import HarmonicBalance
 from sfd_hbm_ros.hbm.floquet import REACH
-from sfd_hbm_ros.hbm.monodromy import FilmSlopes, rates
+from sfd_hbm_ros.hbm.monodromy import rates
 from sfd_hbm_ros.hbm.solution import Solution
 from sfd_hbm_ros.hbm.turning_frame import absolute
 from sfd_hbm_ros.rotor import reduce_model
@@ -40,8 +40,7 @@ def oscillation(balance: HarmonicBalance, circle: Solution) -> Oscillation:
     films = []
     for film, journal in zip(balance.films, circle.journals.values(), strict=True):
         p = journal.at(np.zeros(1))
-        f = film.linearise(*absolute(speed, (p, 0.0 * p, 0.0 * p)))
-        films.append(FilmSlopes(f.by_position, f.by_velocity, f.by_acceleration))
+        films.append(film.linearise(*absolute(speed, (p, 0.0 * p, 0.0 * p))))
     exponents, vectors = np.linalg.eig(rates(rotor, films, speed, speed, turning=speed)[0])
     least = int(np.argmax(np.where(exponents.imag > 0.0, exponents.real, -np.inf)))
     return Oscillation(complex(exponents[least]) * speed, vectors[rotor.journals.ravel(), least])

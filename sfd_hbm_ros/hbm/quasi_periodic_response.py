@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sfd_hbm_ros.hbm.balance import HarmonicBalance
 from sfd_hbm_ros.hbm.floquet import Stability, settled_stability
 from sfd_hbm_ros.hbm.harmonics import Harmonics
-from sfd_hbm_ros.hbm.monodromy import FilmSlopes, monodromy, rates
+from sfd_hbm_ros.hbm.monodromy import monodromy, rates
 from sfd_hbm_ros.hbm.solution import JournalMotion, Solution
 from sfd_hbm_ros.hbm.turning_frame import absolute
 from sfd_hbm_ros.rotor import reduce_model
@@ -111,10 +111,10 @@ def quasi_periodic_stability(
     rotor = reduce_model(balance.model, _REACH * speed)
 
     def monodromy_in(steps: int) -> Array:
-        films = []
-        for film, journal in zip(balance.films, response.journals.values(), strict=True):
-            f = film.linearise(*absolute(speed, journal.over(2 * steps, w)))
-            films.append(FilmSlopes(f.by_position, f.by_velocity, f.by_acceleration))
+        films = [
+            film.linearise(*absolute(speed, journal.over(2 * steps, w)))
+            for film, journal in zip(balance.films, response.journals.values(), strict=True)
+        ]
         return monodromy(rates(rotor, films, speed, w, turning=speed), 2.0 * np.pi)
 
     return settled_stability(monodromy_in, phase_is_free=True)
