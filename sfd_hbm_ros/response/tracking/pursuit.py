@@ -1,4 +1,4 @@
-"""The operating point without a current curve: followed along its branch, or where it jumps to."""
+"""The next operating point: along the current curve, or without one along its own branch."""
 
 from sfd_hbm_ros.hbm import HarmonicBalance
 from sfd_hbm_ros.hbm.time_limit import TimeLimitError, time_limit
@@ -8,8 +8,19 @@ from sfd_hbm_ros.response.tracking.operating_point import OperatingPoint, landed
 from sfd_hbm_ros.response.tracking.way import Way
 
 
+def travelled(guide: Guide, last: OperatingPoint, speed: float) -> OperatingPoint | None:
+    """Go to a speed [rad/s] along the current curve, if there is one that leads there."""
+    if last.place is None or last.balance is not guide.balance:
+        return None
+    place, jumps = guide.journey(last.place, speed)
+    solution = guide.solved(place, last.place, last.solution) if place else None
+    if not (place and solution):
+        return None
+    return OperatingPoint(guide.balance, solution, place, jumps > 0, place.stable_orbit)
+
+
 def pursued(guide: Guide, last: OperatingPoint, speed: float, patience: float) -> OperatingPoint:
-    """Follow a machine to a speed [rad/s] and to what it has become meanwhile.
+    """Follow a machine to a speed and to what it has become meanwhile, or to where it jumps.
 
     Parameters
     ----------
@@ -18,7 +29,7 @@ def pursued(guide: Guide, last: OperatingPoint, speed: float, patience: float) -
     last : OperatingPoint
         Where it was, and what it was then.
     speed : float
-        The speed.
+        The speed [rad/s].
     patience : float
         Processor time that following it may take [s]; where that is not enough, it is sought
         where a machine lands that jumps.

@@ -21,7 +21,7 @@ from sfd_hbm_ros.response.curves.place import Place
 from sfd_hbm_ros.response.tracking.excursion import Excursion
 from sfd_hbm_ros.response.tracking.guide import Guide
 from sfd_hbm_ros.response.tracking.operating_point import OperatingPoint, begun, placed
-from sfd_hbm_ros.response.tracking.pursuit import pursued
+from sfd_hbm_ros.response.tracking.pursuit import pursued, travelled
 from sfd_hbm_ros.response.tracking.tracked import BranchName, Tracked, branch_name, no_solution
 from sfd_hbm_ros.rotor import ResonanceError
 
@@ -155,21 +155,11 @@ class Tracker:
         if last is None:
             self._learn(origin=speed)
             return begun(self._guide, speed)
-        travelled = self._travelled(last, speed)
-        if travelled:
-            return travelled
+        there = travelled(self._guide, last, speed)
+        if there:
+            return there
         self._learn(origin=self._known.origin or speed)
         return pursued(self._guide, last, speed, 0.5 * self._patience)
-
-    def _travelled(self, last: OperatingPoint, speed: float) -> OperatingPoint | None:
-        """The response at the end of a journey along the current curve, if it leads there."""
-        if last.place is None or last.balance is not self._guide.balance:
-            return None
-        place, jumps = self._guide.journey(last.place, speed)
-        solution = self._guide.solved(place, last.place, last.solution) if place else None
-        if not (place and solution):
-            return None
-        return OperatingPoint(self._guide.balance, solution, place, jumps > 0, place.stable_orbit)
 
     def _tracked(self, point: OperatingPoint) -> Tracked:
         """What there is to say about a point."""

@@ -1,15 +1,13 @@
 """The operating point followed through folds, against closed-form orbits and curves' folds."""
 
 from functools import cache
-from itertools import count
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve, time_limit
+from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.events import with_folds
 from sfd_hbm_ros.hbm.family import LoadFamily
@@ -317,69 +315,3 @@ def test_settling_on_nothing_is_refused():
     tracker = guided()
     with pytest.raises(ValueError, match="there is no solution at nan rad/s to settle on"):
         tracker.settle(tracker.predict(np.nan).solution)
-
-
-@pytest.mark.parametrize("wrong", [0.5, 2.0])
-@pytest.mark.parametrize("with_curve", [True, False], ids=["curve", "no curve"])
-@pytest.mark.parametrize("times", [1, 3])
-def test_wrong_speeds_leave_the_branch_alone(wrong, with_curve, times):
-    """Half the speed lies where there is the upper response only, twice the speed the lower."""
-    for side, name in ((LOWEST, BranchName.UPPER), (HIGHEST, BranchName.LOWER)):
-        tracker = guided() if with_curve else Tracker(balance())
-        for i, rpm in enumerate(np.linspace(side, INSIDE, 30)):
-            right = tracker.predict(rpm * RPM, 0.02 * i)
-        for i in range(times):
-            tracker.predict((wrong + 0.01 * i) * INSIDE * RPM, 0.6 + 0.02 * i)
-        after = tracker.predict((INSIDE + 1.0) * RPM, 0.6 + 0.02 * times)
-        expected = orbits(INSIDE + 1.0)[-1 if name == BranchName.UPPER else 0]
-        assert after.solution.eccentricity_max == pytest.approx(expected, abs=1e-8)
-        assert after.branch == right.branch == (name if with_curve else BranchName.UNKNOWN)
-        assert not after.jumped
-
-
-@pytest.mark.parametrize("pause", [1.0, np.nan], ids=["later", "at no known time"])
-def test_machine_that_went_away_and_came_back_has_jumped(pause):
-    tracker = guided()
-    names = [
-        tracker.predict(rpm * RPM, pause * i).branch
-        for i, rpm in enumerate([3900.0, INSIDE, 2.0 * INSIDE, INSIDE])
-    ]
-    assert names[1] == BranchName.UPPER
-    assert tracker.predict(INSIDE * RPM, pause * 4).solution.eccentricity_max == pytest.approx(
-        orbits(INSIDE)[0], abs=1e-8
-    )
-
-
-def test_wrong_speed_that_tells_no_branch_does_not_settle():
-    tracker = guided()
-    tracker.predict(INSIDE * RPM, 0.0)
-    assert tracker.predict(0.5 * INSIDE * RPM, 0.02).solution.converged
-    assert tracker.predict(LOWEST * RPM, 0.04).branch == BranchName.SINGLE
-    tracker = guided()
-    tracker.predict(INSIDE * RPM, 0.0)
-    tracker.predict(0.5 * INSIDE * RPM, 0.02)
-    assert tracker.predict(INSIDE * RPM, 0.04).branch == BranchName.UNKNOWN
-
-
-@pytest.fixture
-def clock(monkeypatch):
-    """A processor that takes a millisecond for each evaluation, however busy the computer is."""
-    ticks = count()
-    monkeypatch.setattr(
-        time_limit, "time", SimpleNamespace(thread_time=lambda: 1e-3 * next(ticks))
-    )
-
-
-def test_patience_ends_a_search_which_a_new_curve_spares(clock):
-    tracker = Tracker(balance(force=-1e-9), patience=0.1)
-    followed(tracker, [3900.0, INSIDE])
-    tracker.change(balance(force=-1e4))
-    said = tracker.predict(INSIDE * RPM)
-    assert said.solution.message == "no solution was found within 0.1 s of processor time"
-    assert np.isnan(said.solution.coefficients).all()
-    tracker.adopt(curve(force=-1e4))
-    [found] = followed(tracker, [INSIDE])
-    assert found.current
-    expected = solve(balance(force=-1e4), INSIDE * RPM)
-    difference = (found.solution.coefficients - expected.coefficients) / balance().clearances
-    assert np.abs(difference).max() < 1e-9
