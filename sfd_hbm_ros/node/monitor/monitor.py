@@ -10,7 +10,6 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
-import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
@@ -26,7 +25,7 @@ from sfd_hbm_ros.node.messages.common import read_speed, read_stamp
 from sfd_hbm_ros.node.monitor.run_record import RunRecord
 from sfd_hbm_ros.node.monitor.run_text import HEADER, alarm, diagnosis, rows, summary
 from sfd_hbm_ros.node.monitor.run_warnings import WarningRecord
-from sfd_hbm_ros.node.process import run
+from sfd_hbm_ros.node.process import run, spin_until
 
 # Best effort, as it matches every publisher; deep, so that no burst is lost.
 _QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -159,7 +158,7 @@ def _until_finished() -> bool:
 def _watch(monitor: Monitor) -> int:
     """Spin the monitor, sum up and return the exit code."""
     try:
-        rclpy.spin_until_future_complete(monitor, monitor.finished)
+        spin_until(monitor, monitor.finished)
     except BrokenPipeError:  # who read the rows has seen enough, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     finally:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import sys
 
-import rclpy
 from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
@@ -17,7 +16,7 @@ from std_srvs.srv import Trigger
 from sfd_hbm_ros.kernels import load_kernels
 from sfd_hbm_ros.node import guard
 from sfd_hbm_ros.node.messages.common import harmonics_message, speed_message
-from sfd_hbm_ros.node.process import run
+from sfd_hbm_ros.node.process import run, spin_until
 from sfd_hbm_ros.node.simulator.disturbance import Disturbance
 from sfd_hbm_ros.node.simulator.parameters import declare, take
 from sfd_hbm_ros.node.simulator.played_machine import JumpError
@@ -148,7 +147,7 @@ def main() -> int:
 def _simulate(simulator: Simulator) -> int:
     """Spin the simulator until it has finished."""
     try:
-        rclpy.spin_until_future_complete(simulator, simulator.finished)
+        spin_until(simulator, simulator.finished)
     except RuntimeError as error:  # as rcl's errors are
         if not simulator.context.ok():  # a signal came while the machine was at work
             raise ExternalShutdownException from error
