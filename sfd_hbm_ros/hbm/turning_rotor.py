@@ -4,14 +4,15 @@ What whirls forward at k w in the turning frame does so at W + k w in the fixed 
 backward there is, as its conjugate, forward whirl at W - k w.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.harmonics import Harmonics
-from sfd_hbm_ros.rotor import Condensation
+from sfd_hbm_ros.rotor import Condensation, Condensed
 from sfd_hbm_ros.rotor.frames import Whirl
 
 Array = NDArray[np.float64]
@@ -47,20 +48,33 @@ class TurningRotor:
         ResonanceError
             If a whirl W + k w meets an undamped resonance of the shaft with its journals held.
         """
-        condensed = self.condensation.at(self.speed, self._orders(w))
+        condensed = self._condensed(w)
         return self._matrix(condensed.stiffness), self._standing(condensed.force)
 
     def slope_by_frequency(self, w: float) -> Array:
         """Derivative of the stiffness by w [N s/m]; the force does not depend on it."""
-        slopes = self.condensation.slope_by_order(self.speed, self._orders(w))
-        return self._matrix(slopes * (self._multiples / self.speed)[:, np.newaxis, np.newaxis])
+        by_order = self._slope_by_order(w)
+        return self._matrix(by_order * (self._multiples / self.speed)[:, np.newaxis, np.newaxis])
 
     def slope_by_speed(self, w: float) -> tuple[Array, Array]:
         """Derivatives of stiffness [N s/m] and force [N s] by the speed at the same w."""
-        stiffness, force = self.condensation.slope(self.speed, self._orders(w))
+        condensed = self._condensed(w)
         # they are those at the same orders 1 + k w / W, which at the same w change with W
         by_orders = self.slope_by_frequency(w) * (w / self.speed)
-        return self._matrix(stiffness) - by_orders, self._standing(force)
+        return self._matrix(condensed.stiffness_slope) - by_orders, self._standing(
+            condensed.force_slope
+        )
+
+    @cached_property
+    def _condensed(self) -> Callable[[float], Condensed]:
+        """The rotor condensed at a frequency, which is asked for several times."""
+        return lru_cache(1)(lambda w: self.condensation.at(self.speed, self._orders(w)))
+
+    @cached_property
+    def _slope_by_order(self) -> Callable[[float], ComplexArray]:
+        return lru_cache(1)(
+            lambda w: self.condensation.slope_by_order(self.speed, self._orders(w))
+        )
 
     @cached_property
     def _multiples(self) -> Array:

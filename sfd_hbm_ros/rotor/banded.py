@@ -7,10 +7,10 @@ have them.
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg.lapack import zgbsv
+from scipy.linalg.lapack import zgbtrf, zgbtrs
 from scipy.sparse import dia_array
 
-from sfd_hbm_ros.rotor.arrays import IndexArray, NumberArray
+from sfd_hbm_ros.rotor.arrays import ComplexArray, IndexArray, NumberArray
 
 
 class SingularSystemError(ArithmeticError):
@@ -45,8 +45,19 @@ def as_sparse(bands: NumberArray) -> dia_array:
     return dia_array((bands.T[::-1], np.arange(-half, half + 1)), shape=(n, n))
 
 
-def solve(bands: NumberArray, rhs: NumberArray) -> NumberArray:
-    """Solve A x = b for several matrices in one call of LAPACK.
+def transposed_product(bands: NumberArray, vectors: NumberArray) -> NumberArray:
+    """Return A^T x for vectors x (..., n, columns)."""
+    n, width = bands.shape[-2:]
+    beyond = [(0, 0)] * (vectors.ndim - 2) + [(width // 2, width // 2), (0, 0)]
+    padded = np.pad(vectors, beyond)
+    product = np.zeros(vectors.shape, dtype=np.result_type(bands, vectors))
+    for diagonal in range(width):
+        product += bands[..., diagonal, np.newaxis] * padded[..., diagonal : diagonal + n, :]
+    return product
+
+
+class Factorised:
+    """Several matrices A, decomposed in one call of LAPACK.
 
     The matrices stand behind one another on the diagonal of one banded matrix. Partial pivoting
     never reaches over from one into the next.
@@ -54,25 +65,37 @@ def solve(bands: NumberArray, rhs: NumberArray) -> NumberArray:
     Parameters
     ----------
     bands : (..., n, 2 half + 1) array
-        The matrices A.
-    rhs : (..., n) array
-        Right-hand sides b.
-
-    Returns
-    -------
-    (..., n) complex array
-        The solutions x.
+        The matrices.
 
     Raises
     ------
     SingularSystemError
         If a pivot is exactly zero.
     """
-    if rhs.size == 0:
-        return rhs
-    half = bands.shape[-1] // 2
-    columns = np.pad(bands.reshape(rhs.size, -1), ((0, 0), (half, 0)))  # room for fill-in
-    *_, x, info = zgbsv(half, half, columns.T, rhs.reshape(-1, 1), overwrite_ab=True)
-    if info > 0:
-        raise SingularSystemError((info - 1) // rhs.shape[-1])
-    return np.asarray(x).reshape(rhs.shape)
+
+    def __init__(self, bands: NumberArray) -> None:
+        n, width = bands.shape[-2:]
+        self._half = width // 2
+        if bands.size == 0:
+            return
+        columns = np.pad(bands.reshape(-1, width), ((0, 0), (self._half, 0)))  # room for fill-in
+        self._factors, self._pivots, info = zgbtrf(
+            columns.T, self._half, self._half, overwrite_ab=True
+        )
+        if info > 0:
+            raise SingularSystemError((info - 1) // n)
+
+    def solve(self, rhs: NumberArray) -> ComplexArray:
+        """Return x of A x = b for right-hand sides b (..., n, columns)."""
+        return self._solved(rhs, 0)
+
+    def solve_transposed(self, rhs: NumberArray) -> ComplexArray:
+        """Return x of A^T x = b for right-hand sides b (..., n, columns)."""
+        return self._solved(rhs, 1)
+
+    def _solved(self, rhs: NumberArray, transposed: int) -> ComplexArray:
+        if rhs.size == 0:
+            return rhs.astype(complex)
+        columns, half = rhs.reshape(-1, rhs.shape[-1]), self._half
+        x, _ = zgbtrs(self._factors, half, half, columns, self._pivots, trans=transposed)
+        return np.asarray(x).reshape(rhs.shape)

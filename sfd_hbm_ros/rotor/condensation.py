@@ -93,10 +93,10 @@ class Condensation:
     def _eliminated(self, speed: float, orders: RealArray, factors: RealArray) -> ComplexArray:
         """Return the shaft's receptance, exactly."""
         parts = self._parts
-        receptance, singular = eliminate(parts.shaft, parts.ports, parts.shaft_force, factors)
-        if singular >= 0:
-            raise ResonanceError(float(orders[singular]), speed)
-        return receptance
+        try:
+            return eliminate(parts.shaft, parts.ports, parts.shaft_force, factors)
+        except banded.SingularSystemError as error:
+            raise self._resonance(error, speed, orders) from error
 
     def _coupled(
         self, receptance: ComplexArray, factors: RealArray, forces: RealArray
@@ -118,7 +118,14 @@ class Condensation:
         force[..., parts.ports] -= (ties @ parts.frame.split(journals)[..., np.newaxis])[..., 0]
         shaft = np.tensordot(factors, parts.shaft, (1, 1))
         try:
-            response = banded.solve(shaft, force)
+            response = banded.Factorised(shaft).solve(force[..., np.newaxis])
         except banded.SingularSystemError as error:
-            raise ResonanceError(float(orders[error.index // force.shape[1]]), speed) from error
-        return parts.frame.join(response)
+            raise self._resonance(error, speed, orders) from error
+        return parts.frame.join(response[..., 0])
+
+    def _resonance(
+        self, error: banded.SingularSystemError, speed: float, orders: RealArray
+    ) -> ResonanceError:
+        """Return which harmonic meets a resonance."""
+        systems = len(self._parts.shaft)
+        return ResonanceError(float(orders[error.index // systems]), speed)
