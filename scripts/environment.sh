@@ -46,7 +46,7 @@ make_venv() {
     local python
     python=$(find_python) ||
         die "no ROS 2 Jazzy is sourced, and its wheels need Python 3.11 to 3.13 on Linux x86_64."
-    echo "Installing ROS 2 Jazzy and the tools into .venv (once, some three minutes, 1.1 GB) ..."
+    echo "Installing ROS 2 Jazzy and the tools into .venv (once, one to three minutes, 1.1 GB) ..."
     "$python" -m venv --clear "$venv" >/dev/null 2>&1 ||
         die "'$python -m venv' failed; on Debian and Ubuntu install the package python3-venv."
     sed -n '/^setuptools==/,/[^\\]$/p' "$lock" >"$venv/setuptools.txt"
@@ -89,7 +89,7 @@ compile_kernels() {
     local folder
     folder=$(python3 -P -c 'import sfd_hbm_ros; print(sfd_hbm_ros.__path__[0])')
     compgen -G "$folder/film/__pycache__/*.nbi" >/dev/null ||
-        echo "Compiling the numerical kernels (once, about 20 s) ..."
+        echo "Compiling the numerical kernels (once, about 10 s) ..."
     python3 -P -c 'import sfd_hbm_ros.hbm'
 }
 
