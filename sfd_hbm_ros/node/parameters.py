@@ -12,6 +12,7 @@ from sfd_hbm_ros.machine import Machine, MachineError, override_all
 from sfd_hbm_ros.machine.errors import show_key, unknown
 from sfd_hbm_ros.machine.oil import Oil
 from sfd_hbm_ros.node.schema import SCHEMA, ParameterError, Spec, machine_schema
+from sfd_hbm_ros.node.unbalance import LIST_SCHEMA, LISTS, ListSpec, agreed, everywhere, listed
 from sfd_hbm_ros.response.warning.settings import AlarmSettings
 
 _SECTIONS = ("dampers", "unbalance", "gravity")
@@ -33,7 +34,7 @@ class Parameters:
         self._given = {name: p.value for name, p in node._parameter_overrides.items()}
         self._refused: dict[str, str] = {}
         self._specs = {spec.name: spec for spec in SCHEMA}
-        self._machine: dict[str, Spec] = {}
+        self._machine: dict[str, Spec | ListSpec] = {}
         for spec in SCHEMA:
             self._declare(spec, self._first_value(spec))
         self._warn(name for name in self._given if name.partition(".")[0] not in _SECTIONS)
@@ -101,21 +102,28 @@ class Parameters:
     def adopt(self, machine: Machine) -> Machine:
         """Declare the values of a machine, and return it with those given at the start.
 
+        It gets an unbalance at every station, of 0 where it has none.
+
         Raises
         ------
         ParameterError, MachineError
             If a value given at the start is not allowed.
         """
-        specs = {spec.name: spec for spec in machine_schema(machine)}
+        machine = everywhere(machine)
+        single = list(machine_schema(machine))
+        schema: list[Spec | ListSpec] = [*single, *LIST_SCHEMA]
+        default = {spec.name: spec.default for spec in single}
+        known = {**default, **listed(default)}
         given = {
-            name: spec.convert(self._given[name])
-            for name, spec in specs.items()
-            if name in self._given
+            spec.name: spec.convert(self._given[spec.name])
+            for spec in schema
+            if spec.name in self._given
         }
-        machine = override_all(machine, given)
-        for name, spec in specs.items():
-            self._declare(spec, given.get(name, spec.default))
-            self._machine[name] = spec
+        values = {**known, **agreed(given, known)}
+        machine = override_all(machine, {spec.name: values[spec.name] for spec in single})
+        for spec in schema:
+            self._declare(spec, values[spec.name])
+            self._machine[spec.name] = spec
         self._warn(name for name in self._given if name.partition(".")[0] in _SECTIONS)
         return machine
 
@@ -128,16 +136,22 @@ class Parameters:
     def converted(self, parameters: Iterable[Parameter]) -> list[Parameter]:
         """Return parameters that are to be set, in the types that they were declared with.
 
+        Those of unbalances come in both of their ways.
+
         Raises
         ------
         ParameterError
-            If one is unknown, of the wrong type or out of its range.
+            If one is unknown, of the wrong type or out of its range, or lists do not go together.
         """
-        return [self._converted(parameter) for parameter in parameters]
+        taken = {one.name: self._converted(one) for one in parameters}
+        known = {name: self[name] for name in self._machine}
+        values = agreed({name: one.value for name, one in taken.items()}, known)
+        return [taken.get(name) or _parameter(name, value) for name, value in values.items()]
 
     def machine_values(self, parameters: Iterable[Parameter]) -> dict[str, Any]:
         """Return the values of the machine among parameters, by their paths."""
-        return {p.name: p.value for p in parameters if p.name in self._machine}
+        single = self._machine.keys() - set(LISTS)
+        return {p.name: p.value for p in parameters if p.name in single}
 
     def take(self, parameters: Sequence[Parameter]) -> None:
         """Note that parameters have been set, which amends what was given at the start."""
@@ -149,7 +163,7 @@ class Parameters:
         known = self._specs | self._machine
         if parameter.name in known:
             value = known[parameter.name].convert(parameter.value)
-            return Parameter(parameter.name, value=value)
+            return _parameter(parameter.name, value)
         if self._node.has_parameter(parameter.name):  # of every node, as use_sim_time is
             return parameter
         raise ParameterError(f"{show_key(parameter.name)} {unknown(parameter.name, known)}")
@@ -162,7 +176,7 @@ class Parameters:
             self._refused[spec.name] = str(error)
             return spec.default
 
-    def _declare(self, spec: Spec, value: Any) -> None:
+    def _declare(self, spec: Spec | ListSpec, value: Any) -> None:
         """Declare a parameter to ROS."""
         self._node.declare_parameter(spec.name, value, spec.descriptor, ignore_override=True)
 
@@ -174,3 +188,12 @@ class Parameters:
                 self._node.get_logger().warning(
                     f"parameter {show_key(name)} {unknown(name, known)}; it has no effect"
                 )
+
+
+def _parameter(name: str, value: Any) -> Parameter:
+    """Return a parameter; the type of an empty list is not seen from its value."""
+    kind = next((spec.kind for spec in LIST_SCHEMA if spec.name == name), None)
+    if kind is None:
+        return Parameter(name, value=value)
+    types = {str: Parameter.Type.STRING_ARRAY, float: Parameter.Type.DOUBLE_ARRAY}
+    return Parameter(name, types[kind], value)

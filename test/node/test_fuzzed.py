@@ -25,6 +25,7 @@ from std_msgs.msg import Header
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.machine import read_machine
 from sfd_hbm_ros.node.predictor import Predictor
+from sfd_hbm_ros.node.unbalance import agreed
 
 from .process import PAPER_ROTOR
 
@@ -183,7 +184,7 @@ def test_parameters(at_work):
         )
         accepted, refused = accepted + result.successful, refused + (not result.successful)
         if result.successful:
-            assert values(at_work) == {**before, **given}
+            assert values(at_work) == {**before, **agreed(given, before)}
         else:
             assert values(at_work) == before
             assert "\n" not in result.reason

@@ -44,7 +44,7 @@ def test_all_steps_are_gone_through(predictor, start_node):
 @pytest.mark.parametrize(
     ("parameter", "reason"),
     [
-        ("station:=disk_9", "did you mean unbalance.disk_1.magnitude?"),
+        ("station:=disk_9", "did you mean unbalance.disk_3.magnitude?"),
         ("magnitude:=-1.0", "unbalance.disk_1.magnitude must be"),
     ],
 )
