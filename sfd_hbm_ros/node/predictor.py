@@ -60,6 +60,8 @@ class Predictor(LeanNode):
         SelfTestService(self)
         self._reporter = Reporter(self, self._hardware, self._statuses)
         guard.answer_always(self, self.caught)
+        # now, as a prediction cannot wait for it; meanwhile DDS makes the node known
+        load_kernels()
         if self._known["autostart"] and self.trigger_configure() == _SUCCESS:
             self.trigger_activate()
 
@@ -174,7 +176,6 @@ class Predictor(LeanNode):
 
 def main() -> int:
     """Run the predictor until SIGINT or SIGTERM."""
-    load_kernels()  # now, as a prediction cannot wait for it
     return run("predictor", Predictor, _spin)
 
 
