@@ -48,9 +48,9 @@ def test_killed_and_resumed(undisturbed, tmp_path):
 
 
 def test_interrupted_in_a_terminal(tmp_path):
-    """Ctrl-C goes to all processes of the group."""
+    """Ctrl-C goes to all processes of the group, in the midst of ten times as many variants."""
     output = tmp_path / "study.csv"
-    interrupted = started(output)
+    interrupted = started(output, "--vary", "dampers.damper_1.viscosity=0.027:0.029:10")
     wait_for_outcomes(output, 2, interrupted)
     children = workers(interrupted)
     os.killpg(interrupted.pid, signal.SIGINT)
@@ -58,7 +58,7 @@ def test_interrupted_in_a_terminal(tmp_path):
     assert status == 130
     assert err.startswith("sfd_hbm: interrupted: ")
     assert err.endswith(
-        f" of {VARIANTS} variants are in {output}.journal; the same command goes on\n"
+        f" of {10 * VARIANTS} variants are in {output}.journal; the same command goes on\n"
     )
     assert err.count("\n") == 1
     wait_for_end(children)
