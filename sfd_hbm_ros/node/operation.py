@@ -194,6 +194,9 @@ class Operation:
         self._harmonics.publish(messages.harmonics_message(*header, journals))
         for call in self.after_prediction:
             call(prediction, stamp)
+        if prediction.tracked and prediction.tracked.wrong_before:
+            with dropping(self._node, self.speed):
+                raise InputError("a speed leapt away and was back at once, so it was wrong")
 
     def _clock(self) -> int:
         """Return the time by the node's clock [ns]."""

@@ -7,6 +7,7 @@ from .graph import Remote  # first, as it skips the file without ROS
 # isort: split
 from .bistable import BOTH, LOWER_ONLY, UPPER_ONLY, begin, orbits, settle_at
 
+WARN = b"\x01"
 STEP = 20_000_000  # ns between two speeds
 
 
@@ -24,4 +25,5 @@ def test_the_branch_is_kept(predictor, wrong, side, upper):
     assert predictor.predict(BOTH, stamp)[0]["damper_1/max"] == expected
     assert predictor.predict(wrong * BOTH, stamp + STEP)[0]["damper_1/max"] != expected
     assert predictor.predict(BOTH, stamp + 2 * STEP)[0]["damper_1/max"] == expected
+    predictor.until_status("Inputs", WARN, "a speed leapt away and was back at once")
     predictor.graph.until(lambda: predictor.now() > stamp + 2 * STEP, "these stamps have passed")

@@ -50,6 +50,8 @@ class Tracked:
         Whether the curve is that of the machine with its present parameters and loads.
     other : Solution or None
         The other stable response at this speed, of several the nearest in eccentricity.
+    wrong_before : bool
+        Whether the speed before was measured wrongly, as this one shows.
     """
 
     solution: Solution
@@ -59,6 +61,7 @@ class Tracked:
     place: Place | None = None
     current: bool = False
     other: Solution | None = None
+    wrong_before: bool = False
 
 
 def branch_name(solution: Solution, others: Sequence[Place]) -> BranchName:

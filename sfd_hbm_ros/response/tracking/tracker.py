@@ -10,6 +10,7 @@ What followed a speed that was measured wrongly is forgotten when the next one s
 """
 
 import math
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -140,7 +141,7 @@ class Tracker:
                 if not point.solution.converged:
                     return Tracked(point.solution)
                 self._learn(last=point)
-                return self._tracked(point)
+                return replace(self._tracked(point), wrong_before=before is not None)
         except ResonanceError as error:
             return Tracked(no_solution(self._guide.balance, speed, str(error)))
         except TimeLimitError:

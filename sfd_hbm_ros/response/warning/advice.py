@@ -35,17 +35,18 @@ def advice(alarm: JumpAlarm, outlook: Outlook, eccentricity: float, now: float) 
     limit = alarm.settings.threshold("eccentricity_{}", Level.WARN)
     near = f"Film near lock-up at eccentricity {eccentricity:.2f}. "
     lock_up = near if 0.0 < limit < eccentricity else ""
-    return lock_up + _about_jump(outlook) + _about_alarm(alarm, now)
+    passed = alarm.leading.active and not lock_up
+    return lock_up + _about_jump(outlook, passed) + _about_alarm(alarm, now)
 
 
-def _about_jump(outlook: Outlook) -> str:
-    """What lies ahead."""
+def _about_jump(outlook: Outlook, passed: bool) -> str:
+    """What lies ahead; `passed` where an alarm that was raised by a jump is active yet."""
     jump = outlook.next
     if math.isnan(jump.speed):
         return "It is not known whether a jump lies ahead"
     other = "; another stable response exists at this speed" if outlook.bistable else ""
     if math.isinf(jump.speed):
-        return f"No jump ahead{other}"
+        return f"No jump ahead{' any more' if passed else ''}{other}"
     rpm, percent = outlook.margin / RPM, 100.0 * outlook.relative_margin
     distance = f"{rpm:.0f} rpm ({percent:.1f} %)"
     return f"{_landing(jump)} expected at {jump.speed / RPM:.0f} rpm, {distance} " + _way(outlook)

@@ -29,6 +29,7 @@ def test_wrong_speeds_leave_the_branch_alone(wrong, with_curve, times):
         assert after.solution.eccentricity_max == pytest.approx(expected, abs=1e-8)
         assert after.branch == right.branch == (name if with_curve else BranchName.UNKNOWN)
         assert not after.jumped
+        assert (right.wrong_before, after.wrong_before) == (False, True)
 
 
 @pytest.mark.parametrize("pause", [1.0, np.nan], ids=["later", "at no known time"])

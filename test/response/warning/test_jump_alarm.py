@@ -310,6 +310,7 @@ def test_sentence_for_each_state():
     assert advice(alarm, below_a_jump(10.0), 0.5, 0.0) == f"{near}; to be acknowledged"
     alarm.acknowledge()
     assert advice(alarm, below_a_jump(10.0), 0.5, 0.0) == f"{near}; acknowledged"
+    assert advice(alarm, far, 0.5, 0.5) == "No jump ahead any more; acknowledged"
     alarm.update(far, 0.5, 1.0)
     gone = "No jump ahead; the warning has gone, is acknowledged and to be reset"
     assert advice(alarm, far, 0.5, 1.0) == gone
