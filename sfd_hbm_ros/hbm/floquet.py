@@ -14,10 +14,10 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from sfd_hbm_ros.film import FilmForces
 from sfd_hbm_ros.hbm.balance import HarmonicBalance
 from sfd_hbm_ros.hbm.monodromy import monodromy, rates
 from sfd_hbm_ros.hbm.solution import Solution
-from sfd_hbm_ros.hbm.turning_frame import turned_back
 from sfd_hbm_ros.rotor import RotorModel, is_axisymmetric, reduce_model
 
 Array = NDArray[np.float64]
@@ -159,9 +159,21 @@ def _rates(balance: HarmonicBalance, rotor: RotorModel, solution: Solution, samp
     """Matrices A of y' = A y over a period, y = (q, dq/dangle), (samples + 1, 2m, 2m)."""
     w = solution.speed
     rotating = is_axisymmetric(rotor)
-    angle = solution.harmonics.angles(samples)
+    turn = _turns(solution.harmonics.angles(samples)) if rotating else None
     films = []
-    for film, journal in zip(balance.films, solution.journals.values(), strict=True):
-        motion = journal.over(samples, w)
-        films.append(film.linearise(*(turned_back(angle, motion) if rotating else motion)))
+    for film, motion in zip(balance.films, solution.journals.values(), strict=True):
+        f = film.linearise(*motion.over(samples, w))
+        films.append(f if turn is None else _seen(f, turn))
     return rates(rotor, films, w, w, w if rotating else 0.0)
+
+
+def _turns(angle: Array) -> Array:
+    """Rotations R by angles, (n, 2, 2)."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.stack([np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)], axis=-2)
+
+
+def _seen(f: FilmForces, turn: Array) -> FilmForces:
+    """The derivatives R^T A R, which frames turned by R see, be the film isotropic or not."""
+    slopes = f.by_position, f.by_velocity, f.by_acceleration
+    return FilmForces(f.force, *(turn.transpose(0, 2, 1) @ slope @ turn for slope in slopes))

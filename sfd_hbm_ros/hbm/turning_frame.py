@@ -32,13 +32,6 @@ def absolute(speed: float, motion: Motion) -> Motion:
     )
 
 
-def turned_back(angles: Array, motion: Motion) -> Motion:
-    """Motion with its vectors turned back by R, by n angles [rad], as the frame's axes show it."""
-    cos, sin = np.cos(angles)[:, np.newaxis], np.sin(angles)[:, np.newaxis]
-    position, velocity, acceleration = (cos * part - sin * part @ _QUARTER.T for part in motion)
-    return position, velocity, acceleration
-
-
 def slopes_by_turning(motion: Motion) -> tuple[Array, Array]:
     """What a faster frame adds to the rates of a motion in it, a unit of its speed.
 
