@@ -84,8 +84,9 @@ def everywhere(machine: Machine) -> Machine:
 
 
 def listed(values: Values) -> dict[str, Any]:
-    """Return the lists for the values of single stations, those of magnitude 0 left out."""
-    there = [one for one in _stations(values) if values[_name(one, "magnitude")] != 0.0]
+    """Return the lists for the values of single stations, those without any left out."""
+    keys = "magnitude", "phase"
+    there = [one for one in _stations(values) if any(values[_name(one, key)] for key in keys)]
     return {
         STATIONS: there,
         MAGNITUDES: [values[_name(one, "magnitude")] for one in there],
@@ -106,16 +107,19 @@ def agreed(given: Values, known: Values) -> dict[str, Any]:
     Raises
     ------
     ParameterError
-        If lists do not go together, name no station or one twice, or if both ways are given.
+        If lists do not go together, name no station or one twice, or if both ways do not agree.
     """
     known = {name: value for name, value in known.items() if name.startswith("unbalance.")}
     lists = [name for name in given if name in LISTS]
     single = [name for name in given if name in known and name not in LISTS]
-    if lists and single:
-        raise ParameterError(f"{single[0]} must not be set together with {lists[0]}")
-    if lists:
-        return {**given, **_from_lists(given, known)}
-    return {**given, **listed({**known, **given})} if single else dict(given)
+    if not lists:
+        return {**given, **listed({**known, **given})} if single else dict(given)
+    values = {**given, **_from_lists(given, known)}
+    for name in single:
+        if given[name] != values[name]:
+            says = f"as the lists of unbalances say, not {show(given[name])}"
+            raise ParameterError(f"{name} must be {values[name]} {says}")
+    return values
 
 
 def _from_lists(given: Values, known: Values) -> dict[str, Any]:

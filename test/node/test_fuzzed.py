@@ -151,6 +151,13 @@ def values(predictor: Predictor) -> dict[str, Any]:
     return {key: one.value for key, one in predictor.get_parameters_by_prefix("").items()}
 
 
+def as_numbers(value: Any, before: Any) -> Any:
+    """Return a value with floats for integers where there were floats before."""
+    if isinstance(value, list):
+        return [as_numbers(one, 0.0 if type(one) is int else one) for one in value]
+    return float(value) if type(before) is float else value
+
+
 def each(number: int, things: st.SearchStrategy[Any], act: Callable[[Any], None]) -> None:
     """Act on a number of random things."""
 
@@ -184,11 +191,12 @@ def test_parameters(at_work):
         )
         accepted, refused = accepted + result.successful, refused + (not result.successful)
         if result.successful:
-            assert values(at_work) == {**before, **agreed(given, before)}
+            taken = {name: as_numbers(value, before[name]) for name, value in given.items()}
+            assert values(at_work) == {**before, **agreed(taken, before)}
         else:
             assert values(at_work) == before
             assert "\n" not in result.reason
             assert 0 < len(result.reason) < 1000
 
-    each(2000, st.dictionaries(names, VALUES, min_size=1, max_size=3), act)
+    each(4000, st.dictionaries(names, VALUES, min_size=1, max_size=3), act)
     assert min(accepted, refused) > 100

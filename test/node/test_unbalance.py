@@ -92,7 +92,7 @@ def test_lists_that_are_left_out_stay(given, expected):
         ),
         (
             {LISTS[1]: [1e-4], "unbalance.disk_1.phase": 0.1},
-            "unbalance.disk_1.phase must not be set together with unbalance.magnitudes",
+            "unbalance.disk_1.phase must be 0.0 as the lists of unbalances say, not 0.1",
         ),
     ],
 )
@@ -100,6 +100,14 @@ def test_what_does_not_go_together_is_refused(given, sentence):
     with pytest.raises(ParameterError) as refused:
         agreed(given, KNOWN)
     assert str(refused.value) == sentence
+
+
+def test_what_was_saved_can_be_set_again():
+    """Whoever saves all parameters saves both ways; a phase may wait for its magnitude."""
+    saved = {**SINGLE, "unbalance.disk_1.phase": 0.5}
+    saved |= listed(saved)
+    assert saved[LISTS[0]] == ["disk_1", "disk_2"]
+    assert agreed(saved, KNOWN) == saved
 
 
 def test_what_is_no_list_of_its_kind_is_refused():
@@ -139,9 +147,9 @@ def test_the_predictor_takes_lists_and_single_stations(predictor):
     check(predictor.predict(350.0), solved(350.0, override_all(everywhere(PAPER), changes)))
     stations, magnitudes, phases = predictor.get(*LISTS)
     assert (stations, list(magnitudes), list(phases)) == (
-        ["disk_1", "disk_3"],
-        [1e-4, 3e-4],
-        [0.0, -0.5],
+        THREE,
+        [1e-4, 0.0, 3e-4],
+        [0.0, 0.5, -0.5],
     )
 
 
@@ -158,7 +166,7 @@ def test_lists_that_are_refused_leave_all_as_it_was(predictor):
 def test_no_unbalance_at_all(predictor):
     empty = {LISTS[0]: [], LISTS[1]: [], LISTS[2]: []}
     assert not any(agreed(empty, KNOWN).values())
-    assert predictor.set({f"unbalance.{station}.magnitude": 0.0 for station in THREE}).successful
+    assert predictor.set(dict.fromkeys(SINGLE, 0.0)).successful
     eccentricity, _ = predictor.predict(350.0)
     assert eccentricity["damper_1/max"] < 1e-12
     assert [list(one) for one in predictor.get(*LISTS)] == [[], [], []]
