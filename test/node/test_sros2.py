@@ -13,6 +13,7 @@ POLICY = ROOT / "sros2" / "predictor.policy.xml"
 # As in the schema of SROS 2: the lists, the expressions in them and the rules that they may bear.
 LISTS = {"topics": ("topic", {"publish", "subscribe"}), "services": ("service", {"reply"})}
 NODE = "predictor"
+QUIET = 4.0  # s without a further name; DDS repeats what was lost after up to 3 s
 
 
 def profile() -> ElementTree.Element:
@@ -49,11 +50,11 @@ def found(graph: Graph, start) -> dict[str, set[str]]:
     since = time.monotonic()
 
     def settled() -> dict[str, set[str]]:
-        """Return the names once a second has brought no more: they are announced one by one."""
+        """Return the names once some time has brought no more: they are announced in parts."""
         nonlocal seen, since
         if (now := dict(names())) != seen:
             seen, since = now, time.monotonic()
-        return seen if time.monotonic() - since > 1.0 else {}
+        return seen if any(seen.values()) and time.monotonic() - since > QUIET else {}
 
     graph.until(lambda: (NODE, "/") in node.get_node_names_and_namespaces(), "it is found")
     return graph.until(settled, "all its names are found")
