@@ -107,7 +107,7 @@ class Measurement:
         back = (self._predicted[-1][0] - stamp) * 1e-9 if self._predicted else 0.0
         if back > self._parameters["stale_after"]:
             self._forget()  # as the clock was set back
-        if prediction.tracked is not None:
+        if prediction.tracked is not None and not prediction.tracked.doubtful:
             self._predicted.append((stamp, prediction.tracked))
 
     def _forget(self) -> None:

@@ -124,9 +124,10 @@ class Memory:
     def _take(self, prediction: Prediction, stamp: int) -> None:
         """Remember a prediction, and save it if it is time."""
         model = self._operation.model
-        if not self._path or model is None or prediction.tracked is None:
+        tracked = prediction.tracked
+        if not self._path or model is None or tracked is None or tracked.doubtful:
             return
-        solution = prediction.tracked.solution
+        solution = tracked.solution
         self._state = State(
             solution.speed,
             solution.harmonics,
@@ -150,7 +151,7 @@ class Memory:
     @property
     def _key(self) -> tuple[object, ...]:
         """What is saved at once when it changes."""
-        prediction = self._operation.prediction
+        prediction = self._operation.believed
         tracked = prediction.tracked if prediction else None
         settled = self._state.settled if self._state else None
         return *self._watch.signature, settled, tracked.branch if tracked else None

@@ -19,6 +19,7 @@ from sfd_hbm_ros.node.inputs import Feed, InputError, Pending
 from sfd_hbm_ros.node.messages import common as messages
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.prediction import Model, Prediction
+from sfd_hbm_ros.response.tracking.excursion import RETURN
 from sfd_hbm_ros.response.warning.acceleration import AccelerationEstimator
 
 _QUEUE = 10
@@ -59,6 +60,7 @@ class Operation:
         self.active = False
         self.model: Model | None = None
         self.prediction: Prediction | None = None
+        self._believed: Prediction | None = None
         self.predictions = 0
         self.failures = 0
         self.after_change: list[Callable[[], None]] = []
@@ -93,6 +95,14 @@ class Operation:
         stale = self.speed.age(time.monotonic()) > self._parameters["stale_after"]
         return "the speed is stale" if stale else ""
 
+    @property
+    def believed(self) -> Prediction | None:
+        """The last prediction, but for those at speeds that have just leapt away."""
+        tracked = self.prediction.tracked if self.prediction else None
+        if tracked and tracked.doubtful and self.speed.age(time.monotonic()) < RETURN:
+            return self._believed
+        return self.prediction
+
     def begin(self, machine: Machine) -> Model:
         """Have another machine, which is not predicted yet."""
         self.model = model = Model(machine, self._parameters["harmonics"])
@@ -118,7 +128,7 @@ class Operation:
         The operating point is kept as it would be over a restart of the node: the machine goes on.
         """
         self.active = False
-        self.prediction = None
+        self.prediction = self._believed = None
         self.speed.forget()
         self._estimator.forget()
 
@@ -183,6 +193,7 @@ class Operation:
         stamp, speed = self._pending.take(time.monotonic()), self.speed.value
         if self.silence or self.model is None or stamp is None or speed is None:
             return
+        self._believed = self.believed
         self.prediction = prediction = self.model.predict(speed, stamp * 1e-9)
         self.predictions += 1
         self.failures += prediction.failed

@@ -19,7 +19,6 @@ from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.jump_status import jump_status
 from sfd_hbm_ros.node.messages import common as messages
 from sfd_hbm_ros.node.operation import Operation
-from sfd_hbm_ros.node.prediction import Prediction
 from sfd_hbm_ros.response.tracking.tracked import BranchName, Tracked
 from sfd_hbm_ros.response.warning.jump_alarm import Answer, JumpAlarm
 from sfd_hbm_ros.response.warning.outlook import Outlook, unknown_outlook
@@ -130,7 +129,7 @@ class Watch:
 
     def _tracked(self) -> Tracked | None:
         """The operating point; None while it is not known."""
-        prediction: Prediction | None = self._operation.prediction
+        prediction = self._operation.believed
         return None if self._operation.silence or prediction is None else prediction.tracked
 
     def _branch(self, tracked: Tracked | None) -> BranchName:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from .graph import Remote  # first, as it skips the file without ROS
+from .graph import Remote, strings  # first, as it skips the file without ROS
 
 # isort: split
 from .bistable import BOTH, LOWER_ONLY, UPPER_ONLY, begin, orbits, settle_at
@@ -23,7 +23,10 @@ def test_the_branch_is_kept(predictor, wrong, side, upper):
     stamp = predictor.now()
     expected = pytest.approx(orbits(BOTH)[upper], abs=1e-8)
     assert predictor.predict(BOTH, stamp)[0]["damper_1/max"] == expected
+    seen = len(predictor.warnings)
     assert predictor.predict(wrong * BOTH, stamp + STEP)[0]["damper_1/max"] != expected
     assert predictor.predict(BOTH, stamp + 2 * STEP)[0]["damper_1/max"] == expected
+    told = {strings(status)["branch"] for _, status in predictor.warnings[seen:]}
+    assert told <= {"upper" if upper else "lower"}  # and not that of the wrong speed
     predictor.until_status("Inputs", WARN, "a speed leapt away and was back at once")
     predictor.graph.until(lambda: predictor.now() > stamp + 2 * STEP, "these stamps have passed")

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from sfd_hbm_ros.node.monitor.run_point import RunPoint
 from sfd_hbm_ros.response.curves.jumps import Direction
+from sfd_hbm_ros.response.tracking.excursion import Excursion
 
 _LIMIT = 1000  # warnings kept, of which the last few matter
 _NUMBER = re.compile(r"\d+(\.\d+)?")
@@ -90,6 +91,7 @@ class WarningRecord:
         self.jumps: list[MetJump] = []
         self._warnings: deque[JumpWarning] = deque(maxlen=_LIMIT)
         self._point: RunPoint | None = None
+        self._excursion = Excursion[bool]()
 
     @property
     def newest(self) -> JumpWarning | None:
@@ -103,7 +105,13 @@ class WarningRecord:
         return new
 
     def follow(self, point: RunPoint) -> None:
-        """Take a prediction, and note a jump on the way from the one before."""
+        """Take a prediction, and note a jump on the way from the one before.
+
+        One at a speed that has just leapt away is left out, as the predictor does.
+        """
+        self._excursion.returned(point.rpm, point.time, known=True)
+        if self._excursion.away:
+            return
         before, self._point = self._point, point
         if before is None:
             return

@@ -25,6 +25,11 @@ class Excursion(Generic[Known]):
     _time: float = math.nan
     _known: Known | None = None  # None where the last speed is no leap away
 
+    @property
+    def away(self) -> bool:
+        """Whether the last speed leapt away from one that may come back."""
+        return self._known is not None
+
     def returned(self, speed: float, time: float, known: Known) -> Known | None:
         """Take the next speed, and return what was known before a leap that it ends.
 

@@ -50,6 +50,8 @@ class Tracked:
         Whether the curve is that of the machine with its present parameters and loads.
     other : Solution or None
         The other stable response at this speed, of several the nearest in eccentricity.
+    doubtful : bool
+        Whether the speed has just leapt away, so that the next one may show that it was wrong.
     wrong_before : bool
         Whether the speed before was measured wrongly, as this one shows.
     """
@@ -61,6 +63,7 @@ class Tracked:
     place: Place | None = None
     current: bool = False
     other: Solution | None = None
+    doubtful: bool = False
     wrong_before: bool = False
 
 

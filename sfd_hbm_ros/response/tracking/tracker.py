@@ -141,7 +141,9 @@ class Tracker:
                 if not point.solution.converged:
                     return Tracked(point.solution)
                 self._learn(last=point)
-                return replace(self._tracked(point), wrong_before=before is not None)
+                tracked = self._tracked(point)
+                away, wrong = self._excursion.away, before is not None
+                return replace(tracked, doubtful=away, wrong_before=wrong)
         except ResonanceError as error:
             return Tracked(no_solution(self._guide.balance, speed, str(error)))
         except TimeLimitError:

@@ -173,6 +173,16 @@ def test_no_jump_is_met_in_the_other_direction_or_unwarned() -> None:
     )
 
 
+def test_no_jump_is_met_at_a_wrong_speed() -> None:
+    record = WarningRecord()
+    record.take(warning(1.0, 0, 3000.0, "run_up"))
+    for rpm, time in ((2000.0, 2.0), (4000.0, 2.02), (2001.0, 2.04)):
+        record.follow(at(rpm, 0.5, time))
+    assert record.jumps == []
+    record.follow(at(3001.0, 0.5, 3.0))
+    assert len(record.jumps) == 1
+
+
 def test_summary_names_peaks_differences_and_jumps() -> None:
     record = recorded((1000, 0.1), (2000, 0.5), (3000, 0.2), (2000, 0.6), (1000, 0.1))
     record.speeds = 7

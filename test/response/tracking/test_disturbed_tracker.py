@@ -23,12 +23,14 @@ def test_wrong_speeds_leave_the_branch_alone(wrong, with_curve, times):
         for i, rpm in enumerate(np.linspace(side, INSIDE, 30)):
             right = tracker.predict(rpm * RPM, 0.02 * i)
         for i in range(times):
-            tracker.predict((wrong + 0.01 * i) * INSIDE * RPM, 0.6 + 0.02 * i)
+            away = tracker.predict((wrong + 0.01 * i) * INSIDE * RPM, 0.6 + 0.02 * i)
+            assert away.solution.converged
+            assert (right.doubtful, away.doubtful) == (False, True)
         after = tracker.predict((INSIDE + 1.0) * RPM, 0.6 + 0.02 * times)
         expected = orbits(INSIDE + 1.0)[-1 if name == BranchName.UPPER else 0]
         assert after.solution.eccentricity_max == pytest.approx(expected, abs=1e-8)
         assert after.branch == right.branch == (name if with_curve else BranchName.UNKNOWN)
-        assert not after.jumped
+        assert (after.jumped, after.doubtful) == (False, False)
         assert (right.wrong_before, after.wrong_before) == (False, True)
 
 
