@@ -20,6 +20,8 @@ ROOT = Path(__file__).parents[1]
 MACHINE = ROOT / "config" / "paper_rotor.yaml"
 RUNS = 5
 
+# Numba imports coverage where there is one, as beside the tests, and not with a user.
+WITHOUT_COVERAGE = "import sys; sys.modules['coverage'] = None\n"
 KERNEL = """
 import numba
 
@@ -103,7 +105,7 @@ class Start(NamedTuple):
 def started(script: str, folder: Path, **environment: str) -> Start | None:
     """Run a script in a process of its own; nothing where it lacks a module, such as rclpy."""
     given = {"PYTHONPATH": str(folder), "OPENBLAS_NUM_THREADS": "1"} | environment
-    command = [sys.executable, "-c", script + REPORT]
+    command = [sys.executable, "-c", WITHOUT_COVERAGE + script + REPORT]
     done = subprocess.run(
         command, env=os.environ | given, cwd=ROOT, capture_output=True, text=True
     )
