@@ -168,6 +168,11 @@ class Pending(Generic[T]):
     _request: T | None = None
     _granted_at: float = -math.inf
 
+    @property
+    def waits(self) -> bool:
+        """Whether there is a request."""
+        return self._request is not None
+
     def put(self, request: T) -> None:
         """Replace the request."""
         self._request = request

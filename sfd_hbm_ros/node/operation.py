@@ -144,7 +144,8 @@ class Operation:
 
     def predict_again(self) -> None:
         """Predict once more as something has changed: soon, whoever changed it hears first."""
-        self._pending.put(self._clock())
+        if not self._pending.waits:  # whose stamp is that of an input
+            self._pending.put(self._clock())
         self._schedule()
 
     def _on_speed(self, message: JointState) -> None:

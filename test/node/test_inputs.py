@@ -73,12 +73,14 @@ def test_streams_of_a_feed_have_orders_of_their_own():
 
 def test_the_newest_request_is_granted_when_it_is_due():
     pending: Pending[str] = Pending(rate=4.0)
+    assert not pending.waits
     assert pending.wait(now=10.0) == 0.0
     assert pending.take(now=10.0) is None
     assert pending.wait(now=10.0) == 0.0  # nothing was granted
     pending.put("first")
     assert pending.take(now=10.0) == "first"
     pending.put("second")
+    assert pending.waits
     pending.put("newest")
     assert pending.wait(now=10.1) == pytest.approx(0.15)
     assert pending.take(now=10.25) == "newest"
