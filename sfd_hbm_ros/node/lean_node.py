@@ -1,4 +1,4 @@
-"""A lifecycle node that leaves the executor little to do."""
+"""A lifecycle node that leaves the executor little to do, and nothing behind."""
 
 from __future__ import annotations
 
@@ -15,6 +15,11 @@ class LeanNode(LifecycleNode):
     rclpy has every publisher log subscribers whose quality of service does not fit, as those do
     themselves. Before every callback the executor would look for such events, at each publisher.
     """
+
+    def destroy_node(self) -> None:
+        """See `Node`; rclpy would leave the state machine, by which others see the node yet."""
+        super().destroy_node()
+        self._state_machine.destroy_when_not_in_use()
 
     def create_publisher(self, *arguments: Any, **options: Any) -> Publisher:
         """See `Node`."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from rcl_interfaces.msg import SetParametersResult
@@ -39,9 +40,15 @@ class Predictor(LeanNode):
     """Predicts how the journals move at the speed and under the loads that arrive.
 
     The README has its topics, config/predictor.yaml its parameters.
+
+    Parameters
+    ----------
+    prepare : callable, optional
+        Called when the node has all that others see of it, before it configures itself: DDS makes
+        it known meanwhile.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, prepare: Callable[[], None] = lambda: None) -> None:
         super().__init__("predictor")
         self._label = "unconfigured"
         self._problem = ""
@@ -60,8 +67,7 @@ class Predictor(LeanNode):
         SelfTestService(self)
         self._reporter = Reporter(self, self._hardware, self._statuses)
         guard.answer_always(self, self.caught)
-        # now, as a prediction cannot wait for it; meanwhile DDS makes the node known
-        load_kernels()
+        prepare()
         if self._known["autostart"] and self.trigger_configure() == _SUCCESS:
             self.trigger_activate()
 
@@ -176,7 +182,8 @@ class Predictor(LeanNode):
 
 def main() -> int:
     """Run the predictor until SIGINT or SIGTERM."""
-    return run("predictor", Predictor, _spin)
+    # Kernels are loaded at the start, as a prediction cannot wait for it.
+    return run("predictor", lambda: Predictor(load_kernels), _spin)
 
 
 def _spin(predictor: Predictor) -> int:

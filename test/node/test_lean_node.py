@@ -1,4 +1,4 @@
-"""What the predictor's node leaves undone, so that its callbacks come at once."""
+"""What the predictor's node leaves undone, and that it leaves nothing behind."""
 
 from .graph import JointState, Time, speed_message  # first of these, as it skips without ROS
 
@@ -24,3 +24,14 @@ def test_publishers_have_no_events_but_those_asked_for(graph):
         assert came[0].velocity[0] == 2.0
     finally:
         node.destroy_node()
+
+
+def test_nobody_sees_a_node_that_was_destroyed(graph):
+    node = LeanNode("gone", context=graph.context)
+
+    def seen() -> bool:
+        return ("gone", "/") in graph.node.get_node_names_and_namespaces()
+
+    graph.until(seen, "it is there")
+    node.destroy_node()
+    graph.until(lambda: not seen(), "it is gone")

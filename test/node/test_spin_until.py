@@ -38,3 +38,4 @@ def test_it_ends_with_its_context(domain):
     finished = Future()
     spin_until(node, finished)
     assert not finished.done()
+    node.destroy_node()
