@@ -1,8 +1,9 @@
 """Unbalances as parameters: of single stations and in lists, which always agree."""
 
 import pytest
+import yaml
 
-from sfd_hbm_ros.machine import override_all, read_machine
+from sfd_hbm_ros.machine import machine_to_dict, override, override_all, read_machine
 
 from .graph import Remote  # first of what needs ROS, as it skips the file without it
 from .process import PAPER_ROTOR
@@ -186,3 +187,14 @@ def test_lists_given_at_the_start(graph, start):
     remote.meet()
     names = [f"unbalance.{station}.magnitude" for station in THREE]
     assert remote.get(*names) == [1e-4, 0.0, 2e-4]
+
+
+def test_a_machine_without_an_unbalance_gets_one(graph, start, tmp_path):
+    file = tmp_path / "balanced.yaml"
+    file.write_text(yaml.safe_dump(machine_to_dict(override(PAPER, "unbalance", []))))
+    start("-r", "__node:=balanced", "-p", f"machine_file:={file}", "-p", "stale_after:=60.0")
+    remote = Remote(graph, "/balanced")
+    remote.meet()
+    assert [list(one) for one in remote.get(*LISTS)] == [[], [], []]
+    assert remote.set(lists(["disk_2"], [4.319e-4], [0.0])).successful
+    check(remote.predict(350.0), solved(350.0))
