@@ -132,10 +132,10 @@ class Tracker:
             taken for wrong, and where they led is forgotten.
         """
         before = self._excursion.returned(speed, time, self._known)
-        if before is not None:
-            self._known = self._replaced(before)
         try:
             with np.errstate(all="ignore"):  # where numbers overflow there is no solution
+                if before is not None:
+                    self._known = self._replaced(before)
                 with time_limit(self._patience):
                     point = self._advanced(speed)
                 if not point.solution.converged:

@@ -133,8 +133,13 @@ class AccelerationEstimator:
 
 
 def _repeated_median(x: Array, y: Array) -> float:
-    """The slope of the repeated median line through n points at different x."""
+    """The slope of the repeated median line through n points at different x.
+
+    NaN where the numbers are too great for it.
+    """
     n = len(x)
     others = ~np.eye(n, dtype=bool)
-    slopes = np.subtract.outer(y, y)[others] / np.subtract.outer(x, x)[others]
-    return float(np.median(np.median(slopes.reshape(n, n - 1), axis=1)))
+    with np.errstate(over="ignore", invalid="ignore"):
+        slopes = np.subtract.outer(y, y)[others] / np.subtract.outer(x, x)[others]
+        slope = float(np.median(np.median(slopes.reshape(n, n - 1), axis=1)))
+    return slope if math.isfinite(slope) else math.nan

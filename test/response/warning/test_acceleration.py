@@ -238,3 +238,13 @@ def test_after_a_gap_or_a_clock_set_back_it_begins_anew(gap):
 def test_bad_settings_are_refused(refused, sentence):
     with pytest.raises(ValueError, match=sentence):
         AccelerationEstimator(**refused)
+
+
+def test_speeds_beyond_what_numbers_can_hold_make_it_unknown():
+    estimator = AccelerationEstimator()
+    for i in range(200):
+        estimator.add(round(i * 0.05 * SECOND), 1e308 * (i % 2))
+    assert not math.isinf(estimator.acceleration)
+    for i in range(200, 400):
+        estimator.add(round(i * 0.05 * SECOND), 400.0 + 0.1 * i)
+    assert estimator.acceleration == pytest.approx(2.0)
