@@ -37,7 +37,6 @@ RUNS = 5
 STAGES: tuple[tuple[str, Any, str], ...] = (
     ("film", ShortFilm, "linearise"),
     ("condensation", Condensation, "at"),
-    ("condensation, slope by the speed", Condensation, "slope"),
     ("linear part of the equations", HarmonicBalance, "at"),
     ("transforms and Jacobian", Equations, "linearise"),
     ("transforms and Jacobian, slope by the speed", Equations, "slope_by_speed"),

@@ -71,14 +71,6 @@ class Condensation:
         arrays = stiffness[0], force[0], stiffness[1], force[1]
         return Condensed(speed, orders, *arrays, self.shaft_response)
 
-    def slope(self, speed: float, orders: ArrayLike) -> tuple[ComplexArray, ComplexArray]:
-        """Return the derivatives by the speed of `Condensed.stiffness` and `Condensed.force`.
-
-        Parameters and errors are those of `at`; units [N s/m] and [N s].
-        """
-        condensed = self.at(speed, orders)
-        return condensed.stiffness_slope, condensed.force_slope
-
     def slope_by_order(self, speed: float, orders: ArrayLike) -> ComplexArray:
         """Return the derivatives of `Condensed.stiffness` by each harmonic's order [N/m].
 

@@ -43,7 +43,8 @@ def errors_against_differences(condensation, speed, slopes, step):
 )
 def test_slope_equals_differences(machine, speed):
     condensation = Condensation(assemble(machine))
-    slopes = condensation.slope(speed, ORDERS)
+    condensed = condensation.at(speed, ORDERS)
+    slopes = condensed.stiffness_slope, condensed.force_slope
     errors = [
         errors_against_differences(condensation, speed, slopes, h) for h in (1e-3, 1e-4, 1e-5)
     ]
