@@ -1,17 +1,19 @@
 """The command line: `python3 -m sfd_hbm_ros VERB ...`, or `sfd_hbm VERB ...`.
 
 Exit status 0 with the result on standard output; 2 with one sentence on standard error for bad
-input; 1 with one sentence where no solution was found; 130 where the user has interrupted.
+input and for files that cannot be read or written; 1 with one sentence where no solution was
+found; 130 where the user has interrupted; 70 for an error of the program itself, of which a file
+keeps the traceback. Warnings go to standard error and change no status.
 """
 
 import argparse
 import sys
+import tempfile
+import traceback
+import warnings
 from collections.abc import Sequence
 from importlib import import_module
 from typing import NoReturn
-
-from sfd_hbm_ros.response.errors import NoSolutionError
-from sfd_hbm_ros.study.errors import IncompleteError
 
 VERBS = {
     "solve": "The response at one speed: eccentricity and harmonics of every damper.",
@@ -46,21 +48,62 @@ def main(arguments: Sequence[str] | None = None) -> int:
             options.set_defaults(run=verb.run)
     chosen = parser.parse_args(given)
     try:
-        chosen.run(chosen)
+        with warnings.catch_warnings():  # where numbers overflow, the outcome tells
+            warnings.simplefilter("ignore", RuntimeWarning)
+            chosen.run(chosen)
     except BrokenPipeError:  # the reader of a pipe has seen enough
         sys.stderr.close()
-    except (ValueError, OSError, ModuleNotFoundError) as error:
-        return _refuse(parser.prog, error, 2)
-    except (NoSolutionError, IncompleteError) as error:
-        return _refuse(parser.prog, error, 1)
     except KeyboardInterrupt as interrupt:
-        return _refuse(parser.prog, str(interrupt) or "interrupted", 130)
+        return _end(parser.prog, str(interrupt) or "interrupted", 130)
+    except Exception as error:
+        return _end(parser.prog, *_told(error, given))
     return 0
 
 
-def _refuse(program: str, error: Exception | str, status: int) -> int:
-    print(f"{program}: {error}", file=sys.stderr)
+def _end(program: str, sentence: str, status: int) -> int:
+    print(f"{program}: {' '.join(sentence.split())}", file=sys.stderr)
     return status
+
+
+def _told(error: Exception, given: Sequence[str]) -> tuple[str, int]:
+    """What a user is told of an error, and the exit status."""
+    # imported here, as they take their time and the verb has imported them already
+    from numpy.linalg import LinAlgError
+
+    from sfd_hbm_ros.commands.arguments import UsageError
+    from sfd_hbm_ros.hbm.options import OptionError
+    from sfd_hbm_ros.machine import MachineError
+    from sfd_hbm_ros.response.errors import NoSolutionError
+    from sfd_hbm_ros.study.errors import IncompleteError, StudyError
+
+    if isinstance(error, (UsageError, MachineError, OptionError, StudyError)):
+        return str(error), 2
+    if isinstance(error, OSError):
+        return ": ".join(str(one) for one in (error.filename, error.strerror or error) if one), 2
+    if isinstance(error, ModuleNotFoundError):
+        return str(error), 2
+    if isinstance(error, (NoSolutionError, IncompleteError)):
+        return str(error), 1
+    if isinstance(error, (ArithmeticError, LinAlgError)):
+        return f"no solution: the numbers leave the range of the computer ({error})", 1
+    if isinstance(error, MemoryError):
+        return f"no solution: it takes more memory than there is ({error})", 1
+    return _report(error, given), 70
+
+
+def _report(error: Exception, given: Sequence[str]) -> str:
+    """Keep an error's traceback in a file, and say where."""
+    name = type(error).__name__
+    lines = [f"sfd_hbm {' '.join(given)}", f"Python {sys.version}", traceback.format_exc()]
+    try:
+        with tempfile.NamedTemporaryFile(
+            "w", prefix="sfd_hbm_report_", suffix=".txt", delete=False, encoding="utf-8"
+        ) as file:
+            file.write("\n".join(lines))
+    except OSError:
+        traceback.print_exc()
+        return f"an error of the program itself, {name}: {error}; please report it with the above"
+    return f"an error of the program itself, {name}: {error}; please report it with {file.name}"
 
 
 if __name__ == "__main__":

@@ -3,7 +3,12 @@
 import argparse
 from typing import Any
 
-from sfd_hbm_ros.commands.arguments import add_machine, print_json, read_changed_machine
+from sfd_hbm_ros.commands.arguments import (
+    UsageError,
+    add_machine,
+    print_json,
+    read_changed_machine,
+)
 from sfd_hbm_ros.rotor import assemble, critical_speeds, whirl_modes
 from sfd_hbm_ros.units import RPM
 
@@ -27,7 +32,7 @@ def run(chosen: argparse.Namespace) -> None:
         _print(chosen.json, {"critical_speeds": criticals}, criticals)
         return
     if not 0.0 <= chosen.rpm < float("inf"):
-        raise ValueError(f"--rpm {chosen.rpm:g}: must be a finite speed of at least 0 rpm")
+        raise UsageError(f"--rpm {chosen.rpm:g}: must be a finite speed of at least 0 rpm")
     modes = [
         {"frequency_rad_s": mode.frequency, "direction": mode.direction.value}
         for mode in whirl_modes(model, chosen.rpm * RPM)

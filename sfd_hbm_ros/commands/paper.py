@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from sfd_hbm_ros.commands.arguments import add_json, print_json
+from sfd_hbm_ros.commands.files import check_figures
 from sfd_hbm_ros.commands.progress import Progress
 from sfd_hbm_ros.report.paper.cases import Cases, cases_file, read_cases
 from sfd_hbm_ros.report.paper.claims import JudgedClaim, judge
@@ -27,6 +28,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Compute the paper's curves, judge its claims, and draw its figures."""
+    if chosen.figures:
+        check_figures(chosen.figures)
     started = time.perf_counter()
     cases = read_cases(cases_file())
     computed: dict[str, ResponseCurve] = {}

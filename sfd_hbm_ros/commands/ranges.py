@@ -2,6 +2,7 @@
 
 import math
 
+from sfd_hbm_ros.commands.arguments import UsageError
 from sfd_hbm_ros.machine import Machine, MachineError, get
 
 
@@ -10,7 +11,7 @@ def range_from(option: str, text: str) -> tuple[float, float]:
 
     Raises
     ------
-    ValueError
+    UsageError
         If the text is not two different finite numbers with a colon between.
     """
     try:
@@ -18,7 +19,7 @@ def range_from(option: str, text: str) -> tuple[float, float]:
     except ValueError:
         start = end = math.nan
     if not (math.isfinite(start) and math.isfinite(end) and start != end):
-        raise ValueError(f"{option} {text}: must be A:B with two different finite numbers")
+        raise UsageError(f"{option} {text}: must be A:B with two different finite numbers")
     return start, end
 
 
@@ -27,7 +28,7 @@ def varied_from(text: str, machine: Machine) -> tuple[str, float, float]:
 
     Raises
     ------
-    ValueError
+    UsageError
         If the text has another form, or the entry is not a number.
     MachineError
         If there is no such entry.

@@ -8,17 +8,22 @@ from typing import Any
 import numpy as np
 
 from sfd_hbm_ros.commands.arguments import (
+    UsageError,
     add_harmonics,
     add_machine,
     print_json,
     read_changed_machine,
 )
+from sfd_hbm_ros.commands.files import check_outputs
 from sfd_hbm_ros.commands.progress import Progress, speed_bar
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.report.transient_table import write_transient
 from sfd_hbm_ros.response.integration.observed import ObservedJump, observed_jumps
+from sfd_hbm_ros.response.integration.ramp import Ramp
 from sfd_hbm_ros.response.integration.transient import Transient, simulate
 from sfd_hbm_ros.units import RPM
+
+_MOST_REVOLUTIONS = 1_000_000  # hours of computation
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -44,7 +49,9 @@ def run(chosen: argparse.Namespace) -> None:
     end = _positive("--to", chosen.end, "speed", "rpm")
     rate = _positive("--rate", chosen.rate, "rate", "rpm/s")
     if start == end:
-        raise ValueError(f"--to {chosen.end:g}: must differ from --from {chosen.start:g} rpm")
+        raise UsageError(f"--to {chosen.end:g}: must differ from --from {chosen.start:g} rpm")
+    check_outputs(chosen)
+    _check_length(Ramp.between(start, end, rate), chosen.rate)
     balance = HarmonicBalance(read_changed_machine(chosen), Harmonics(chosen.harmonics))
     started = time.perf_counter()
     with Progress(speed_bar(start, end)) as progress:
@@ -65,8 +72,17 @@ def run(chosen: argparse.Namespace) -> None:
 def _positive(option: str, value: float, what: str, unit: str) -> float:
     """A speed [rad/s] or a rate [rad/s2] of a value given in rpm."""
     if not (math.isfinite(value) and value > 0.0):
-        raise ValueError(f"{option} {value:g}: must be a finite {what} above 0 {unit}")
+        raise UsageError(f"{option} {value:g}: must be a finite {what} above 0 {unit}")
     return value * RPM
+
+
+def _check_length(ramp: Ramp, rate: float) -> None:
+    """Refuse a run of days."""
+    if ramp.revolutions > _MOST_REVOLUTIONS:
+        raise UsageError(
+            f"--rate {rate:g}: must be faster, as the run would take {ramp.revolutions:.2g} "
+            f"revolutions, and {_MOST_REVOLUTIONS:.0e} at most are computed"
+        )
 
 
 def _draw(transient: Transient, jumps: list[ObservedJump], path: str) -> None:

@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from sfd_hbm_ros.commands.arguments import (
+    UsageError,
     add_harmonics,
     add_machine,
     print_json,
     read_changed_machine,
     speed_from,
 )
+from sfd_hbm_ros.commands.files import check_outputs
 from sfd_hbm_ros.commands.progress import Progress, share_bar
 from sfd_hbm_ros.commands.ranges import range_from
 from sfd_hbm_ros.commands.study_report import data_of, text_of
@@ -76,11 +78,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> None:
     """Compute what the journal does not hold yet, and write it all."""
     started = time.perf_counter()
+    chosen.journal = Path(f"{chosen.output}.journal")
+    check_outputs(chosen, (".csv", ".parquet"))
     machine = read_changed_machine(chosen)
     design, task = _study(chosen, machine)
     check_variants(design, machine)
     write = study_writer(chosen.output)
-    with Journal(Path(f"{chosen.output}.journal"), _identity(chosen, task)) as journal:
+    with Journal(chosen.journal, _identity(chosen, task)) as journal:
         kept = len(journal.outcomes)
         with Progress(share_bar(kept, len(design), "variants")) as progress:
             results = complete(journal, design, _computer(task, chosen.scheduler), progress)
@@ -101,13 +105,13 @@ def run(chosen: argparse.Namespace) -> None:
 
 def _study(chosen: argparse.Namespace, machine: Machine) -> tuple[Design, Task]:
     if bool(chosen.sample) != (chosen.samples is not None):
-        raise ValueError("--sample and --samples: must be given together")
+        raise UsageError("--sample and --samples: must be given together")
     if chosen.seed is not None and not chosen.sample:
-        raise ValueError(f"--seed {chosen.seed}: is for --sample")
+        raise UsageError(f"--seed {chosen.seed}: is for --sample")
     if chosen.samples is not None and chosen.samples < 1:
-        raise ValueError(f"--samples {chosen.samples}: must be at least 1")
+        raise UsageError(f"--samples {chosen.samples}: must be at least 1")
     if chosen.seed is not None and chosen.seed < 0:
-        raise ValueError(f"--seed {chosen.seed}: must be at least 0")
+        raise UsageError(f"--seed {chosen.seed}: must be at least 0")
     design = Design(
         grid_from(chosen.vary, machine),
         scatter_from(chosen.sample, machine),

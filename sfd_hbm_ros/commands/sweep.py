@@ -5,12 +5,14 @@ import time
 from dataclasses import replace
 
 from sfd_hbm_ros.commands.arguments import (
+    UsageError,
     add_harmonics,
     add_machine,
     print_json,
     read_changed_machine,
     speed_from,
 )
+from sfd_hbm_ros.commands.files import check_outputs
 from sfd_hbm_ros.commands.progress import Progress
 from sfd_hbm_ros.commands.ranges import range_from, varied_from
 from sfd_hbm_ros.commands.sweep_report import data_of, text_of
@@ -57,6 +59,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Follow the response and print what it shows."""
+    check_outputs(chosen)
     started = time.perf_counter()
     summary = Summary(_curve(chosen))
     seconds = time.perf_counter() - started
@@ -95,7 +98,7 @@ def _curve(chosen: argparse.Namespace) -> ResponseCurve:
     if chosen.vary is not None:
         for option in ("detached", "select"):
             if getattr(chosen, option):
-                raise ValueError(f"--{option}: is for a range of speeds, not for --vary")
+                raise UsageError(f"--{option}: is for a range of speeds, not for --vary")
         return _over_parameter(chosen, HarmonicBalance(machine, harmonics))
     lowest, highest = sorted(range_from("--rpm", chosen.rpm))
     speeds = speed_from(lowest), speed_from(highest)
@@ -123,4 +126,4 @@ def _number(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise ValueError(f"--rpm {text}: must be a single speed with --vary") from None
+        raise UsageError(f"--rpm {text}: must be a single speed with --vary") from None

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from sfd_hbm_ros.commands.arguments import UsageError
 from sfd_hbm_ros.commands.ranges import check_number, range_from
 from sfd_hbm_ros.machine import Machine
 from sfd_hbm_ros.study.design import MAX_VARIANTS
@@ -18,7 +19,7 @@ def grid_from(texts: Iterable[str], machine: Machine) -> dict[str, list[float]]:
 
     Raises
     ------
-    ValueError
+    UsageError
         If a text has another form, a path stands twice, or the entry is not a number.
     MachineError
         If there is no such entry.
@@ -27,7 +28,7 @@ def grid_from(texts: Iterable[str], machine: Machine) -> dict[str, list[float]]:
     for path, text in _entries("--vary", texts, machine):
         ends, _, count = text.rpartition(":")
         if not (":" in ends and count.isdecimal() and 2 <= int(count) <= MAX_VARIANTS):
-            raise ValueError(
+            raise UsageError(
                 f"--vary {path}={text}: must be PATH=A:B:N with N values from A to B, 2 or more "
                 f"and {MAX_VARIANTS} at most"
             )
@@ -40,7 +41,7 @@ def scatter_from(texts: Iterable[str], machine: Machine) -> dict[str, Distributi
 
     Raises
     ------
-    ValueError
+    UsageError
         If a text has another form, a path stands twice, or the entry is not a number.
     MachineError
         If there is no such entry.
@@ -55,7 +56,7 @@ def _entries(option: str, texts: Iterable[str], machine: Machine) -> Iterator[tu
         path, _, rest = text.partition("=")
         check_number(machine, path)
         if path in seen:
-            raise ValueError(f"{option} {path}: must be given once")
+            raise UsageError(f"{option} {path}: must be given once")
         seen.add(path)
         yield path, rest
 
@@ -63,14 +64,14 @@ def _entries(option: str, texts: Iterable[str], machine: Machine) -> Iterator[tu
 def _distribution(path: str, text: str) -> Distribution:
     call = _CALL.fullmatch(text)
     if call is None or call[1] not in DISTRIBUTIONS:
-        raise ValueError(
+        raise UsageError(
             f"--sample {path}={text}: must be PATH=normal(MEAN,SD), PATH=uniform(A,B) or "
             "PATH=lognormal(MEDIAN,S)"
         )
     try:
         return DISTRIBUTIONS[call[1]](_float(call[2]), _float(call[3]))
     except ValueError as error:
-        raise ValueError(f"--sample {path}={text}: {error}") from None
+        raise UsageError(f"--sample {path}={text}: {error}") from None
 
 
 def _float(text: str) -> float:

@@ -9,9 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.jacobian import block_diagonal
+from sfd_hbm_ros.hbm.options import OptionError
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+MAX_MULTIPLES = 400
+"""Films excite none so high, and the work grows with the third power of their number."""
+
+MAX_SAMPLES = 16_384
+"""Of a period, twice as many as the most harmonics need: their bases fill the memory."""
 
 
 @dataclass(frozen=True)
@@ -25,10 +32,12 @@ class Harmonics:
     Parameters
     ----------
     highest : int
-        The highest order k of the speed, at least 1.
+        The highest order k of the speed, at least 1; times `revolutions` at most
+        MAX_MULTIPLES.
     samples : int, optional
         Time samples a period. By default the least power of two from 64 on that gives 16 to the
-        highest order, for each revolution: the film's spectrum reaches beyond it.
+        highest order, for each revolution: the film's spectrum reaches beyond it. At most
+        MAX_SAMPLES.
     revolutions : int, optional
         Revolutions of the rotor in a period: 2 or 3 for sub-harmonics of a half or a third.
     multiples : tuple of int, optional
@@ -36,7 +45,7 @@ class Harmonics:
 
     Raises
     ------
-    ValueError
+    OptionError
         If a number is out of its range.
     """
 
@@ -47,23 +56,33 @@ class Harmonics:
 
     def __post_init__(self) -> None:
         if self.highest < 1:
-            raise ValueError(f"harmonics: {self.highest} is not allowed, it must be at least 1")
+            raise OptionError(f"harmonics: {self.highest} is not allowed, it must be at least 1")
         if self.revolutions < 1:
-            raise ValueError(
+            raise OptionError(
                 f"revolutions: {self.revolutions} is not allowed, it must be at least 1"
             )
         most = self.highest * self.revolutions
+        if most > MAX_MULTIPLES:
+            times = f" times {self.revolutions} revolutions" if self.revolutions > 1 else ""
+            raise OptionError(
+                f"harmonics: {self.highest}{times} are not allowed, they must be {MAX_MULTIPLES} "
+                "at most"
+            )
         multiples = self.multiples or tuple(range(most + 1))
         revolution = max(64, 1 << (16 * self.highest - 1).bit_length())
         samples = self.samples or self.revolutions * revolution
         object.__setattr__(self, "multiples", multiples)
         object.__setattr__(self, "samples", samples)
         if multiples[0] != 0 or multiples[-1] > most or np.any(np.diff(multiples) <= 0):
-            raise ValueError(
+            raise OptionError(
                 f"multiples: {multiples} is not allowed, they must rise from 0 to {most} at most"
             )
+        if samples > MAX_SAMPLES:
+            raise OptionError(
+                f"samples: {samples} is not allowed, a period must have at most {MAX_SAMPLES}"
+            )
         if samples < 2 * most + 1:
-            raise ValueError(
+            raise OptionError(
                 f"samples: {samples} is not allowed, {self.highest} harmonics need at least "
                 f"{2 * most + 1} a period"
             )

@@ -25,6 +25,7 @@ class Outcome(Enum):
     CLEARANCE = "the orbit closed on the clearance"
     SINGULAR = "the Jacobian is singular"
     LOAD = "the load could not be raised to its full value"
+    RANGE = "the numbers leave the range of the computer"
     RESONANCE = "a harmonic meets an undamped resonance of the shaft"
 
     @property

@@ -3,6 +3,10 @@
 from dataclasses import dataclass
 
 
+class OptionError(ValueError):
+    """A setting out of its range: the sentence has its name, its value and what is allowed."""
+
+
 @dataclass(frozen=True)
 class NewtonOptions:
     """Settings of Newton's method.
@@ -18,7 +22,7 @@ class NewtonOptions:
 
     Raises
     ------
-    ValueError
+    OptionError
         If a setting is out of its range.
     """
 
@@ -28,13 +32,13 @@ class NewtonOptions:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.tolerance < 1.0:
-            raise ValueError(f"tolerance: {self.tolerance} is not allowed, it must be in (0, 1)")
+            raise OptionError(f"tolerance: {self.tolerance} is not allowed, it must be in (0, 1)")
         if self.iterations < 1:
-            raise ValueError(
+            raise OptionError(
                 f"iterations: {self.iterations} is not allowed, it must be at least 1"
             )
         if not 0.0 < self.shortest_step < 1.0:
-            raise ValueError(
+            raise OptionError(
                 f"shortest_step: {self.shortest_step} is not allowed, it must be in (0, 1)"
             )
 
@@ -61,7 +65,7 @@ class ContinuationOptions:
 
     Raises
     ------
-    ValueError
+    OptionError
         If a setting is out of its range.
     """
 
@@ -75,11 +79,11 @@ class ContinuationOptions:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.shortest_step <= self.first_step <= self.longest_step:
-            raise ValueError(
+            raise OptionError(
                 f"steps: {self.shortest_step}, {self.first_step}, {self.longest_step} are not "
                 "allowed, they must be positive and rise from shortest over first to longest"
             )
         if not 0.0 < self.eccentricity < 1.0:
-            raise ValueError(
+            raise OptionError(
                 f"eccentricity: {self.eccentricity} is not allowed, it must be between 0 and 1"
             )

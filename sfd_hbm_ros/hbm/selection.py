@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sfd_hbm_ros.hbm.balance import HarmonicBalance
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.newton import newton
+from sfd_hbm_ros.hbm.options import OptionError
 from sfd_hbm_ros.hbm.solve import solve_equations
 from sfd_hbm_ros.machine import Machine
 
@@ -55,13 +56,13 @@ class SelectedBalance:
 
     Raises
     ------
-    ValueError
+    OptionError
         If the tolerance is not positive.
     """
 
     def __init__(self, machine: Machine, trial: Harmonics, tolerance: float = 1e-4) -> None:
         if not tolerance > 0.0:
-            raise ValueError(f"tolerance: {tolerance} is not allowed, it must be positive")
+            raise OptionError(f"tolerance: {tolerance} is not allowed, it must be positive")
         self.full = HarmonicBalance(machine, trial)
         self.trial = trial
         self.tolerance = tolerance

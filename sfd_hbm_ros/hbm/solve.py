@@ -53,6 +53,16 @@ def solve(
     if not (np.isfinite(speed) and speed > 0.0):
         raise ValueError(f"speed: {speed} rad/s is not allowed, it must be positive and finite")
     try:
+        with np.errstate(all="ignore"):
+            return _solve(balance, speed, start, options)
+    except (OverflowError, np.linalg.LinAlgError):
+        return _failure(balance, speed, Outcome.RANGE, Outcome.RANGE.value)
+
+
+def _solve(
+    balance: HarmonicBalance, speed: float, start: Solution | None, options: NewtonOptions
+) -> Solution:
+    try:
         equations = balance.at(speed)
     except ResonanceError as error:
         return _failure(balance, speed, Outcome.RESONANCE, str(error))

@@ -19,6 +19,7 @@ from sfd_hbm_ros.machine.files import (
     write_machine,
 )
 from sfd_hbm_ros.machine.model import Machine
+from sfd_hbm_ros.machine.parts import doubts
 from sfd_hbm_ros.machine.paths import get, override, override_all
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "Material",
     "ShaftSegment",
     "Unbalance",
+    "doubts",
     "get",
     "machine_from_dict",
     "machine_to_dict",

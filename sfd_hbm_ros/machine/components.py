@@ -31,8 +31,8 @@ class Material(Part):
     place: ClassVar[str] = "materials.{name}"
 
     name: Annotated[str, label("name, the key under materials")]
-    youngs_modulus: Annotated[float, number("Young's modulus", "Pa", above=0.0)]
-    density: Annotated[float, number("density", "kg/m3", above=0.0)]
+    youngs_modulus: Annotated[float, number("Young's modulus", "Pa", above=0.0, usual=(1e8, 1e13))]
+    density: Annotated[float, number("density", "kg/m3", above=0.0, usual=(100.0, 25e3))]
     poisson_ratio: Annotated[float, number("Poisson's ratio", above=-1.0, below=0.5)]
 
 
@@ -43,9 +43,11 @@ class ShaftSegment(Part):
     place: ClassVar[str] = "shaft"
 
     elements: Annotated[int, integer("number of elements", least=1)]
-    length: Annotated[float, number("length of one element", "m", above=0.0)]
-    outer_diameter: Annotated[float, number("outer diameter", "m", above=0.0)]
-    inner_diameter: Annotated[float, number("inner diameter", "m", least=0.0, default=0.0)]
+    length: Annotated[float, number("length of one element", "m", above=0.0, usual=(1e-4, 2.0))]
+    outer_diameter: Annotated[float, number("outer diameter", "m", above=0.0, usual=(1e-3, 2.5))]
+    inner_diameter: Annotated[
+        float, number("inner diameter", "m", least=0.0, usual=(1e-4, 2.5), default=0.0)
+    ]
     material: Annotated[Material, reference("material", Material)]
 
     def __post_init__(self) -> None:
@@ -69,9 +71,13 @@ class Disk(Station):
 
     place: ClassVar[str] = "disks.{name}"
 
-    mass: Annotated[float, number("mass", "kg", above=0.0)]
-    polar_inertia: Annotated[float, number("inertia about the shaft", "kg m2", least=0.0)]
-    diametral_inertia: Annotated[float, number("inertia about a diameter", "kg m2", least=0.0)]
+    mass: Annotated[float, number("mass", "kg", above=0.0, usual=(1e-4, 1e5))]
+    polar_inertia: Annotated[
+        float, number("inertia about the shaft", "kg m2", least=0.0, usual=(1e-9, 1e5))
+    ]
+    diametral_inertia: Annotated[
+        float, number("inertia about a diameter", "kg m2", least=0.0, usual=(1e-9, 1e5))
+    ]
 
 
 @dataclass(frozen=True)
@@ -80,8 +86,12 @@ class Bearing(Station):
 
     place: ClassVar[str] = "bearings.{name}"
 
-    stiffness: Annotated[Matrix2, matrix("stiffness", number("", "N/m", above=0.0))]
-    damping: Annotated[Matrix2, matrix("damping", number("", "N s/m", least=0.0))] = (
+    stiffness: Annotated[
+        Matrix2, matrix("stiffness", number("", "N/m", above=0.0, usual=(1e3, 1e13)))
+    ]
+    damping: Annotated[
+        Matrix2, matrix("damping", number("", "N s/m", least=0.0, usual=(1e-4, 1e9)))
+    ] = (
         (0.0, 0.0),
         (0.0, 0.0),
     )
@@ -104,17 +114,24 @@ class Damper(Station):
 
     place: ClassVar[str] = "dampers.{name}"
 
-    bearing_stiffness: Annotated[float, number("ball bearing's stiffness", "N/m", above=0.0)]
-    bearing_damping: Annotated[
-        float, number("ball bearing's damping", "N s/m", least=0.0, default=0.0)
+    bearing_stiffness: Annotated[
+        float, number("ball bearing's stiffness", "N/m", above=0.0, usual=(1e3, 1e13))
     ]
-    journal_mass: Annotated[float, number("journal's mass", "kg", above=0.0)]
-    centering_stiffness: Annotated[float, number("centring spring's stiffness", "N/m", least=0.0)]
-    diameter: Annotated[float, number("journal's diameter", "m", above=0.0)]
-    length: Annotated[float, number("length of the land", "m", above=0.0)]
-    clearance: Annotated[float, number("radial clearance", "m", above=0.0)]
-    viscosity: Annotated[float, number("oil's dynamic viscosity", "Pa s", above=0.0)]
-    density: Annotated[float, number("oil's density", "kg/m3", least=0.0)]
+    bearing_damping: Annotated[
+        float,
+        number("ball bearing's damping", "N s/m", least=0.0, usual=(1e-4, 1e9), default=0.0),
+    ]
+    journal_mass: Annotated[float, number("journal's mass", "kg", above=0.0, usual=(1e-4, 1e4))]
+    centering_stiffness: Annotated[
+        float, number("centring spring's stiffness", "N/m", least=0.0, usual=(10.0, 1e12))
+    ]
+    diameter: Annotated[float, number("journal's diameter", "m", above=0.0, usual=(2e-3, 2.5))]
+    length: Annotated[float, number("length of the land", "m", above=0.0, usual=(2e-4, 2.0))]
+    clearance: Annotated[float, number("radial clearance", "m", above=0.0, usual=(2e-6, 5e-3))]
+    viscosity: Annotated[
+        float, number("oil's dynamic viscosity", "Pa s", above=0.0, usual=(1e-5, 2.0))
+    ]
+    density: Annotated[float, number("oil's density", "kg/m3", least=0.0, usual=(100.0, 5e3))]
     film: Annotated[FilmSettings, one("film's model", FilmSettings)] = FilmSettings()
 
     def __post_init__(self) -> None:
@@ -138,8 +155,10 @@ class Unbalance(Action):
 
     place: ClassVar[str] = "unbalance.{station}"
 
-    magnitude: Annotated[float, number("mass times eccentricity", "kg m", least=0.0)]
-    phase: Annotated[float, number("phase", "rad")] = 0.0
+    magnitude: Annotated[
+        float, number("mass times eccentricity", "kg m", least=0.0, usual=(0.0, 10.0))
+    ]
+    phase: Annotated[float, number("phase", "rad", usual=(0.0, 6.3))] = 0.0
 
 
 @dataclass(frozen=True)

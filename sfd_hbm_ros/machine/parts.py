@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields
 from typing import Any, ClassVar, TypeVar, get_type_hints
 
@@ -56,6 +56,21 @@ class Part:
 def plain(part: Part) -> dict[str, Any]:
     """Return a part as plain data: mappings, lists, text, numbers and booleans."""
     return {key: rule.plain(getattr(part, key)) for key, rule in part.rules.items()}
+
+
+def doubts(part: Part, place: str = "") -> Iterator[str]:
+    """Return sentences on numbers that are allowed, but not of a size that machines have.
+
+    Each begins with the dotted key; most likely the number is in another unit.
+    """
+    for key, rule in part.rules.items():
+        value = getattr(part, key)
+        if isinstance(value, tuple) and value and isinstance(value[0], Part):
+            for index, item in enumerate(value):
+                label = getattr(item, "name", getattr(item, "station", index))
+                yield from doubts(item, dotted(place, key, str(label)))
+        elif words := rule.doubt(value):
+            yield f"{dotted(place, key)} {words}"
 
 
 def read(kind: type[P], data: object, place: str, materials: Any = (), **given: object) -> P:

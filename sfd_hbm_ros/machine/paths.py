@@ -1,7 +1,8 @@
 """Any entry of a machine by its dotted path, such as ``dampers.damper_1.centering_stiffness``.
 
 The items of a list go by their name, unbalances and loads by their station, and what has neither
-by its index: ``shaft.0.length``, ``loads.disk_3.force.1``.
+by its index: ``shaft.0.length``, ``loads.disk_3.force.1``. Every station has an unbalance, of 0
+where the machine has none: ``unbalance.bearing_1.magnitude``.
 """
 
 from __future__ import annotations
@@ -9,10 +10,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from sfd_hbm_ros.machine.components import Unbalance
 from sfd_hbm_ros.machine.errors import MachineError, dotted, show_key, unknown
 from sfd_hbm_ros.machine.files import machine_from_dict, machine_to_dict
 from sfd_hbm_ros.machine.model import Machine
 from sfd_hbm_ros.machine.nested import item_label
+from sfd_hbm_ros.machine.parts import plain
 
 
 def get(machine: Machine, path: str) -> Any:
@@ -23,7 +26,9 @@ def get(machine: Machine, path: str) -> Any:
     MachineError
         If there is no such entry; the sentence says which there are.
     """
-    container, key = _find(machine_to_dict(machine), path)
+    data = machine_to_dict(machine)
+    data["unbalance"] += _zero_unbalances(machine, path)
+    container, key = _find(data, path)
     return container[key]
 
 
@@ -50,10 +55,23 @@ def override_all(machine: Machine, changes: Mapping[str, Any]) -> Machine:
         If there is no such entry, or the machine cannot be with these values.
     """
     data = machine_to_dict(machine)
+    data["unbalance"] += _zero_unbalances(machine, *changes)
     places = [(_find(data, path), value) for path, value in changes.items()]
     for (container, key), value in places:
         container[key] = value
+    none = _zero_unbalances(machine, *changes)
+    if none and "unbalance" not in changes:
+        data["unbalance"] = [one for one in data["unbalance"] if one not in none]
     return machine_from_dict(data)
+
+
+def _zero_unbalances(machine: Machine, *paths: str) -> list[dict[str, Any]]:
+    """Return what a machine file would have at stations without unbalance, if paths name one."""
+    if not any(path.startswith("unbalance.") for path in paths):
+        return []
+    present = {one.station for one in machine.unbalance}
+    absent = (station for station in machine.stations if station not in present)
+    return [plain(Unbalance(station, 0.0)) for station in absent]
 
 
 def _find(data: Any, path: str) -> tuple[Any, Any]:

@@ -17,6 +17,20 @@ from typing import Any
 from sfd_hbm_ros.machine.errors import NUMBER
 
 REQUIRED = object()
+OTHER_UNITS = {
+    "m": {"mm": 1e-3, "um": 1e-6},
+    "kg": {"g": 1e-3},
+    "kg m": {"g mm": 1e-6, "kg mm": 1e-3},
+    "kg m2": {"kg mm2": 1e-6},
+    "kg/m3": {"g/cm3": 1e3},
+    "N/m": {"N/mm": 1e3, "N/um": 1e6},
+    "N s/m": {"N s/mm": 1e3},
+    "Pa": {"GPa": 1e9, "MPa": 1e6},
+    "Pa s": {"mPa s": 1e-3},
+    "rad": {"deg": math.pi / 180.0},
+}
+"""Units that data sheets and drawings have, in SI: what may have been meant by an odd number."""
+
 NAME = re.compile(r"(?=.{1,64}$)[\w-]+( [\w-]+)*")
 
 
@@ -41,6 +55,8 @@ class Rule:
     default : object
         What a file means by leaving the key out, where the dataclass cannot have a default
         because fields without one follow.
+    doubt : callable
+        Returns what is odd about a value that is allowed, as it follows the key; '' if nothing is.
     """
 
     about: str
@@ -49,6 +65,7 @@ class Rule:
     plain: Callable[[Any], Any] = lambda value: value
     read: Callable[[Any, str, Any], Any] = lambda data, key, materials: data
     default: object = REQUIRED
+    doubt: Callable[[Any], str] = lambda value: ""
 
 
 def number(
@@ -58,9 +75,14 @@ def number(
     above: float = -math.inf,
     least: float = -math.inf,
     below: float = math.inf,
+    usual: tuple[float, float] | None = None,
     default: object = REQUIRED,
 ) -> Rule:
-    """Return the rule of a real number with above < number < below and number >= least."""
+    """Return the rule of a real number with above < number < below and number >= least.
+
+    A size outside of `usual`, from the least to the greatest that machines have, is allowed and
+    doubted: most likely it is in another unit. Zero means that there is no such thing.
+    """
     limits = {"above": above, "of at least": least, "below": below}
     allowed = f"a finite number [{unit}]" if unit else "a finite number"
     words = " and ".join(f"{word} {x:g}" for word, x in limits.items() if math.isfinite(x))
@@ -72,7 +94,20 @@ def number(
             raise ValueError
         return x
 
-    return Rule(about, f"{allowed} {words}".rstrip(), convert, default=default)
+    def doubt(x: float) -> str:
+        least_usual, most_usual = usual or (0.0, math.inf)
+        if x == 0.0 or least_usual <= abs(x) <= most_usual:
+            return ""
+        for other, factor in OTHER_UNITS.get(unit, {}).items():
+            meant = abs(x) * factor
+            if least_usual <= meant <= most_usual:
+                question = f"were {x:g} {other} meant, which are {x * factor:g} {unit}?"
+                break
+        else:
+            question = "is it in that unit?"
+        return f"is {x:g} {unit}, where {least_usual:g} to {most_usual:g} are usual: {question}"
+
+    return Rule(about, f"{allowed} {words}".rstrip(), convert, default=default, doubt=doubt)
 
 
 def integer(about: str, *, least: int) -> Rule:

@@ -37,8 +37,12 @@ def matrix(about: str, direct: Rule) -> Rule:
         (xx, xy), (yx, yy) = value
         return xx if xx == yy and xy == yx == 0.0 else [[xx, xy], [yx, yy]]
 
+    def doubt(value: Matrix2) -> str:
+        (xx, _), (_, yy) = value
+        return direct.doubt(xx) or direct.doubt(yy)
+
     allowed = f"{direct.allowed}, or a matrix [[xx, xy], [yx, yy]] whose xx and yy are such"
-    return Rule(about, allowed, convert, plain)
+    return Rule(about, allowed, convert, plain, doubt=doubt)
 
 
 def _sequence(value: object) -> list[Any] | tuple[Any, ...]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sfd_hbm_ros.machine import Machine, MachineError, override_all
 from sfd_hbm_ros.study.distributions import Distribution
+from sfd_hbm_ros.study.errors import StudyError
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ class Design:
 
     Raises
     ------
-    ValueError
+    StudyError
         If nothing varies, an entry stands twice, or there are too many variants.
     """
 
@@ -46,11 +47,11 @@ class Design:
 
     def __post_init__(self) -> None:
         if not self.paths:
-            raise ValueError("nothing varies: a study needs --vary or --sample")
+            raise StudyError("nothing varies: a study needs --vary or --sample")
         for path in self.grid.keys() & self.scatter.keys():
-            raise ValueError(f"{path}: must be varied or sampled, not both")
+            raise StudyError(f"{path}: must be varied or sampled, not both")
         if len(self) > MAX_VARIANTS:
-            raise ValueError(f"{len(self)} variants: must be {MAX_VARIANTS} at most")
+            raise StudyError(f"{len(self)} variants: must be {MAX_VARIANTS} at most")
 
     def __len__(self) -> int:
         return math.prod(len(values) for values in self.grid.values()) * self.samples

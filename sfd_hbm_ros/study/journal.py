@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from sfd_hbm_ros.study.errors import StudyError
 from sfd_hbm_ros.study.task import Outcome
 
 
@@ -30,7 +31,7 @@ class Journal:
     ------
     OSError
         If it cannot be opened or written, or another process is at it.
-    ValueError
+    StudyError
         If it is of another study, or not a journal.
     """
 
@@ -74,10 +75,10 @@ class Journal:
         try:
             begun, outcomes = _parsed(whole)
         except (ValueError, TypeError, KeyError, AttributeError):
-            raise ValueError(f"{self.path}: is not the journal of a study") from None
+            raise StudyError(f"{self.path}: is not the journal of a study") from None
         other = [key for key, value in study.items() if begun.get(key) != value]
         if other:
-            raise ValueError(
+            raise StudyError(
                 f"{self.path}: holds a study with another {', '.join(other)}; delete it, or give "
                 "another --output"
             )

@@ -93,7 +93,7 @@ def test_progress_is_for_a_terminal():
         (("--rate", "-30"), "sfd_hbm: --rate -30: must be a finite rate above 0 rpm/s"),
         (("--rate", "1e6"), "sfd_hbm: rate: 104720 rad/s2 leads from 409.454 to 408.407 rad/s in"),
         (("--harmonics", "0"), "sfd_hbm: harmonics: 0 is not allowed"),
-        (("--output", "no/such/folder.csv"), "sfd_hbm: [Errno 2] No such file or directory"),
+        (("--output", "no/such/folder.csv"), "sfd_hbm: --output no/such/folder.csv: no file can "),
     ],
 )
 def test_bad_input_is_status_2_and_one_sentence(arguments, sentence, capsys):

@@ -41,6 +41,8 @@ def machine(paper: Machine) -> Machine:
         ("dampers.damper_1.film", {"model": "short", "cavitation": True, "inertia": True}),
         ("dampers.damper_1.film.inertia", True),
         ("unbalance.disk_2.magnitude", 4.319e-4),
+        ("unbalance.disk_1.magnitude", 0.0),
+        ("unbalance.damper_1.phase", 0.0),
         ("loads.disk_3.force", [0.0, -100.0]),
         ("loads.disk_3.force.1", -100.0),
     ],
@@ -61,6 +63,16 @@ def test_overrides_of_the_design(machine: Machine) -> None:
     assert changed.gravity is True
     assert machine.gravity is False
     assert changed.shaft == machine.shaft
+
+
+@pytest.mark.parametrize("station", ["disk_1", "bearing_1", "damper_1"])
+def test_every_station_can_have_an_unbalance(machine: Machine, station: str) -> None:
+    changes = {f"unbalance.{station}.magnitude": "2e-4", "unbalance.disk_2.phase": 1.0}
+    kept, added = override_all(machine, changes).unbalance
+    assert (added.station, added.magnitude, added.phase) == (station, 2e-4, 0.0)
+    assert (kept.station, kept.magnitude, kept.phase) == ("disk_2", 4.319e-4, 1.0)
+    with pytest.raises(MachineError, match=f"unbalance.{station}.magnitude must be a finite num"):
+        override(machine, f"unbalance.{station}.magnitude", -1.0)
 
 
 def test_a_material_changes_in_the_shaft_too(machine: Machine) -> None:
@@ -94,7 +106,9 @@ UNKNOWN = [
     ("disks.disk_1.mas", "disks.disk_1.mas is unknown (did you mean mass?); known here: name, no"),
     ("disks.disk_1.", "disks.disk_1.'' is unknown; known here: name, node, mass"),
     ("dampers.damper_1.clearence", "dampers.damper_1.clearence is unknown (did you mean cleara"),
-    ("unbalance.disk_1.magnitude", "unbalance.disk_1 is unknown (did you mean disk_2?); known "),
+    ("unbalance.disk_9.magnitude", "unbalance.disk_9 is unknown (did you mean disk_3?); known "),
+    ("unbalance.shaft.magnitude", "unbalance.shaft is unknown; known here: disk_2, disk_1, disk_"),
+    ("unbalance.disk_1.mass", "unbalance.disk_1.mass is unknown; known here: station, magnitude"),
     ("loads.disk_3.force.2", "loads.disk_3.force.2 is unknown; known here: 0, 1"),
 ]
 

@@ -7,6 +7,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from sfd_hbm_ros.hbm.options import OptionError
+
 Array = NDArray[np.float64]
 
 
@@ -24,7 +26,7 @@ class Radau:
 
     Raises
     ------
-    ValueError
+    OptionError
         If the number is below 2.
     """
 
@@ -32,7 +34,7 @@ class Radau:
 
     def __post_init__(self) -> None:
         if self.stages < 2:
-            raise ValueError(f"stages: {self.stages} is not allowed, it must be at least 2")
+            raise OptionError(f"stages: {self.stages} is not allowed, it must be at least 2")
 
     @cached_property
     def nodes(self) -> Array:

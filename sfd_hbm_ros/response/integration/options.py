@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from sfd_hbm_ros.hbm.options import OptionError
+
 SAMPLES = 128
 """Positions handed on in each revolution, a multiple of the steps."""
 
@@ -24,7 +26,7 @@ class IntegrationOptions:
 
     Raises
     ------
-    ValueError
+    OptionError
         If a setting is out of its range.
     """
 
@@ -35,9 +37,9 @@ class IntegrationOptions:
 
     def __post_init__(self) -> None:
         if self.steps < 1 or SAMPLES % self.steps:
-            raise ValueError(f"steps: {self.steps} is not allowed, it must divide {SAMPLES}")
+            raise OptionError(f"steps: {self.steps} is not allowed, it must divide {SAMPLES}")
         if not self.resolution > 0.0:
-            raise ValueError(f"resolution: {self.resolution} is not allowed, it must be positive")
+            raise OptionError(f"resolution: {self.resolution} is not allowed, it must be positive")
 
 
 DEFAULTS = IntegrationOptions()

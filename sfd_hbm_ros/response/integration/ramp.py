@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sfd_hbm_ros.hbm.options import OptionError
 from sfd_hbm_ros.response.curves.jumps import Direction
 
 Array = NDArray[np.float64]
@@ -52,7 +53,7 @@ class Ramp:
 
     Raises
     ------
-    ValueError
+    OptionError
         If a number is out of its range, or the rotor would stop on the way.
     """
 
@@ -63,11 +64,11 @@ class Ramp:
     def __post_init__(self) -> None:
         _positive("start", self.start, "rad/s")
         if self.revolutions < 1:
-            raise ValueError(
+            raise OptionError(
                 f"revolutions: {self.revolutions} is not allowed, it must be at least 1"
             )
         if not self.start**2 + 2.0 * self.acceleration * _REVOLUTION * self.revolutions > 0.0:
-            raise ValueError(
+            raise OptionError(
                 f"acceleration: {self.acceleration} rad/s2 is not allowed, the rotor must not "
                 f"stop within {self.revolutions} revolutions from {self.start} rad/s"
             )
@@ -80,7 +81,7 @@ class Ramp:
 
         Raises
         ------
-        ValueError
+        OptionError
             If a number is not positive and finite, or the run is shorter than a revolution.
         """
         _positive("start", start, "rad/s")
@@ -90,7 +91,7 @@ class Ramp:
         angle = (end**2 - start**2) / (2.0 * acceleration)
         revolutions = int(angle / _REVOLUTION + _ROUNDING)
         if revolutions < 1:
-            raise ValueError(
+            raise OptionError(
                 f"rate: {rate:g} rad/s2 leads from {start:g} to {end:g} rad/s in less than a "
                 "revolution"
             )
@@ -134,4 +135,4 @@ class Ramp:
 
 def _positive(name: str, value: float, unit: str) -> None:
     if not (np.isfinite(value) and value > 0.0):
-        raise ValueError(f"{name}: {value} {unit} is not allowed, it must be positive and finite")
+        raise OptionError(f"{name}: {value} {unit} is not allowed, it must be positive and finite")
