@@ -49,6 +49,7 @@ def jump_status(
         "run_up_jump_rpm": _number(outlook.run_up.speed / RPM),
         "coast_down_jump_rpm": _number(outlook.coast_down.speed / RPM),
         "alarm": str(alarm.state(now)),
+        "held_by": "; ".join(str(cause) for cause in alarm.causes(now)),
         "since_s": _number(now - leading.since),
         "occurrences": str(leading.occurrences),
         "model_age_s": _number(model_age),

@@ -44,6 +44,8 @@ def test_a_jump_ahead():
         "coast_down_jump_rpm": "3900",
         "alarm": "active, unacknowledged",
         "since_s": "2.5",
+        "held_by": "margin to the jump 50 rpm, limit 100 rpm, beyond the limit; "
+        "time to the jump 25 s, limit 30 s, beyond the limit",
         "occurrences": "1",
         "model_age_s": "3",
     }

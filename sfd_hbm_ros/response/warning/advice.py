@@ -5,6 +5,7 @@ import math
 from sfd_hbm_ros.response.curves.jumps import Direction
 from sfd_hbm_ros.response.warning.alarm import AlarmState
 from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
+from sfd_hbm_ros.response.warning.limits import Cause, Side
 from sfd_hbm_ros.response.warning.outlook import JumpAhead, Outlook
 from sfd_hbm_ros.response.warning.settings import Level
 from sfd_hbm_ros.units import RPM
@@ -35,8 +36,13 @@ def advice(alarm: JumpAlarm, outlook: Outlook, eccentricity: float, now: float) 
     limit = alarm.settings.threshold("eccentricity_{}", Level.WARN)
     near = f"Film near lock-up at eccentricity {eccentricity:.2f}. "
     lock_up = near if 0.0 < limit < eccentricity else ""
-    passed = alarm.leading.active and not lock_up
-    return lock_up + _about_jump(outlook, passed) + _about_alarm(alarm, now)
+    passed = alarm.held_for(now) > 0.0 and not lock_up
+    return (
+        lock_up
+        + _about_jump(outlook, passed)
+        + _about_level(alarm, now)
+        + _about_alarm(alarm, now)
+    )
 
 
 def _about_jump(outlook: Outlook, passed: bool) -> str:
@@ -67,6 +73,31 @@ def _way(outlook: Outlook) -> str:
         return f"ahead, in {time:.{0 if time >= 10.0 else 1}f} s at the present acceleration"
     side = "above" if outlook.next.direction is Direction.RUN_UP else "below"
     return f"{side} the present speed"
+
+
+def _about_level(alarm: JumpAlarm, now: float) -> str:
+    """Why the level is what it is."""
+    causes = alarm.causes(now)
+    if causes:
+        return "".join(f"; {_held(cause)}" for cause in causes)
+    rest = alarm.held_for(now)
+    name = alarm.level(now).name
+    return f"; all are behind their limits, {name} ends within {math.ceil(rest)} s" if rest else ""
+
+
+def _held(cause: Cause) -> str:
+    """How a limit holds a level."""
+    limit = cause.limit
+    side = "above" if limit.above else "below"
+    threshold = limit.shown(cause.threshold)
+    if cause.side is Side.BEYOND:
+        return f"the {limit.about} is {side} its limit of {threshold}"
+    if cause.side is Side.UNKNOWN:
+        reading = limit.shown(cause.reading)
+        return f"the {limit.about} was {reading} when last known, its limit is {threshold}"
+    back = "below" if limit.above else "above"
+    release = limit.shown(cause.release)
+    return f"the {limit.about} is not yet back {back} {release}, its limit is {threshold}"
 
 
 def _about_alarm(alarm: JumpAlarm, now: float) -> str:

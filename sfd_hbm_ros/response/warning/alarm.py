@@ -101,6 +101,12 @@ class Alarm:
                 self._raise(now)
         self._settle(settings.latch)
 
+    def ends_in(self, now: float, settings: AlarmSettings) -> float:
+        """Time until it is active no longer, as its condition holds no longer [s]; else 0."""
+        if self.present or not self.active:
+            return 0.0
+        return max(0.0, self._changed + settings.off_delay - now)
+
     def acknowledge(self, latch: bool) -> None:
         """Note that an operator has seen the alarm."""
         self.acknowledged = self.raised

@@ -5,14 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Annotated, Any, NamedTuple
 
+from sfd_hbm_ros.machine.errors import MachineError, show
 from sfd_hbm_ros.machine.parts import Part, plain, read
 from sfd_hbm_ros.machine.rules import number
 from sfd_hbm_ros.response.warning.alarm import Alarm, AlarmMemory, AlarmState
+from sfd_hbm_ros.response.warning.limits import LIMITS, Cause, Switches, readings
 from sfd_hbm_ros.response.warning.outlook import Outlook
 from sfd_hbm_ros.response.warning.settings import AlarmSettings, Level
-from sfd_hbm_ros.units import RPM
+
+_NONE: Mapping[str, float] = MappingProxyType({})
 
 
 class Answer(NamedTuple):
@@ -48,16 +52,45 @@ class JumpAlarm:
     def __init__(self, settings: AlarmSettings) -> None:
         self.settings = settings
         self.alarms = {Level.WARN: Alarm(), Level.ERROR: Alarm()}
+        self._switches = {level: Switches(level) for level in self.alarms}
         self._shelved_until = -math.inf
 
-    def update(self, outlook: Outlook, eccentricity: float, now: float) -> None:
-        """Take what lies ahead and the greatest eccentricity of any damper, NaN if unknown.
+    def update(
+        self,
+        outlook: Outlook,
+        eccentricity: float,
+        now: float,
+        others: Mapping[str, float] = _NONE,
+    ) -> None:
+        """Take what is known of a machine now.
 
         What is not computable neither raises an alarm nor ends one.
+
+        Parameters
+        ----------
+        outlook : Outlook
+            What lies ahead.
+        eccentricity : float
+            Predicted, the greatest of any damper; NaN if unknown.
+        now : float
+            The time [s].
+        others : mapping of str to float, optional
+            Further readings, by the names of their `limits`; those left out are unknown.
         """
+        given = {**readings(outlook, eccentricity), **others}
         for level, alarm in self.alarms.items():
-            present = _present(alarm.present, level, outlook, eccentricity, self.settings)
-            alarm.update(present, now, self.settings)
+            alarm.update(self._switches[level].update(given, self.settings), now, self.settings)
+
+    def causes(self, now: float) -> list[Cause]:
+        """The limits that hold the level which is shown; none where a delay or the latch does."""
+        level = self.level(now)
+        return self._switches[level].causes if level in self._switches else []
+
+    def held_for(self, now: float) -> float:
+        """Time for which the level shown is held yet by its off-delay [s]; 0 where it is not."""
+        level = self.level(now)
+        alarm = self.alarms.get(level)
+        return alarm.ends_in(now, self.settings) if alarm else 0.0
 
     def level(self, now: float) -> Level:
         """The level to show: OK while shelved; where alarms latch, it is held until reset."""
@@ -116,7 +149,9 @@ class JumpAlarm:
     def to_dict(self, now: float) -> dict[str, Any]:
         """Plain data from which the alarm can be restored after a restart."""
         memories = {_key(level): plain(one.memory(now)) for level, one in self.alarms.items()}
-        return {**memories, "shelf": plain(ShelfMemory(self.shelved_for(now)))}
+        limits = {_key(level): switches.memory() for level, switches in self._switches.items()}
+        shelf = plain(ShelfMemory(self.shelved_for(now)))
+        return {**memories, "shelf": shelf, "limits": limits}
 
     @classmethod
     def from_dict(cls, settings: AlarmSettings, data: Mapping[str, Any], now: float) -> JumpAlarm:
@@ -131,6 +166,8 @@ class JumpAlarm:
         for level in alarm.alarms:
             memory = read(AlarmMemory, data.get(_key(level)), _key(level))
             alarm.alarms[level] = Alarm.restored(memory, now)
+            held = _limits_held(data.get("limits", {}), _key(level))
+            alarm._switches[level].restore(held, settings)
         shelf = read(ShelfMemory, data.get("shelf"), "shelf")
         alarm._shelved_until = now + shelf.remaining
         return alarm
@@ -140,23 +177,20 @@ def _key(level: Level) -> str:
     return level.name.lower()
 
 
-def _present(
-    before: bool, level: Level, outlook: Outlook, eccentricity: float, settings: AlarmSettings
-) -> bool:
-    """Whether a threshold of a level is passed, or was and not all lie behind by the deadband.
+def _limits_held(data: object, level: str) -> Mapping[str, float]:
+    """The last readings of the limits that held a level; older data have none.
 
-    Every comparison with NaN is false, so that what is unknown leaves things as they were.
+    Raises
+    ------
+    MachineError
+        If the data are no readings.
     """
-    small = {
-        "margin_{}_rpm": outlook.margin / RPM,
-        "margin_{}_percent": 100.0 * outlook.relative_margin,
-        "time_{}": outlook.time_to_jump,
-    }
-    band = settings.deadband
-    for quantity, value in small.items():
-        limit = settings.threshold(quantity, level)
-        if limit and (not value > (1.0 + band) * limit if before else value < limit):
-            return True
-    limit = settings.threshold("eccentricity_{}", level)
-    holds = not eccentricity < (1.0 - band) * limit if before else eccentricity > limit
-    return bool(limit) and holds
+    held = data.get(level, {}) if isinstance(data, Mapping) else data
+    place = f"limits.{level}"
+    if not isinstance(held, Mapping):
+        raise MachineError(f"must be a mapping, not {show(held)}", place)
+    for limit in LIMITS:
+        reading = held.get(limit.name, 0.0)
+        if not isinstance(reading, int | float) or not math.isfinite(reading):
+            raise MachineError(f"must be a finite number, not {show(reading)}", limit.name, place)
+    return held

@@ -39,8 +39,8 @@ def _delay(about: str) -> Rule:
 class AlarmSettings(Part):
     """Thresholds and times of the alarm.
 
-    A level is entered where any of its thresholds is passed. It is left where all of them lie
-    behind by the deadband.
+    A level is entered where any of its thresholds is passed. It is left where each that was
+    passed lies behind by the deadband.
 
     Raises
     ------

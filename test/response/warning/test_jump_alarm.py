@@ -14,6 +14,7 @@ from sfd_hbm_ros.response.curves.jumps import Direction
 from sfd_hbm_ros.response.warning.advice import advice
 from sfd_hbm_ros.response.warning.alarm import AlarmState
 from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
+from sfd_hbm_ros.response.warning.limits import ECCENTRICITY, MARGIN, MARGIN_PERCENT, TIME
 from sfd_hbm_ros.response.warning.outlook import JumpAhead, Outlook, unknown_outlook
 from sfd_hbm_ros.response.warning.settings import AlarmSettings, Level
 
@@ -82,9 +83,111 @@ def test_each_threshold(settings, outlook, eccentricity, level):
 
 
 def test_what_is_not_computable_ends_no_alarm():
-    alarm = after(PROMPT, 10.0)
-    alarm.update(unknown_outlook(400.0, math.nan), math.nan, 1.0)
+    alarm, unknown = after(PROMPT, 10.0), unknown_outlook(400.0, math.nan)
+    alarm.update(unknown, math.nan, 1.0)
     assert alarm.level(1.0) is Level.ERROR
+    assert advice(alarm, unknown, math.nan, 1.0) == (
+        "It is not known whether a jump lies ahead; the margin to the jump was 10 rpm when last "
+        "known, its limit is 20 rpm; to be acknowledged"
+    )
+
+
+def test_an_alarm_of_one_quantity_is_not_held_by_the_deadband_of_another():
+    """Raised by the time in a fast ramp, it ends at a steady speed, at eccentricity 0.877."""
+    alarm = JumpAlarm(AlarmSettings())
+    for now in np.arange(0.0, 10.0, 0.1).tolist():
+        alarm.update(below_a_jump(1500.0, 250.0 * RPM), 0.877, now)
+    assert below_a_jump(1500.0, 250.0 * RPM).time_to_jump == pytest.approx(6.0)
+    assert alarm.level(10.0) is Level.ERROR
+    [cause] = alarm.causes(10.0)
+    assert (cause.limit, cause.threshold) == (TIME, 10.0)
+    steady = below_a_jump(1361.0)
+    for now in np.arange(10.0, 3610.0, 0.5).tolist():
+        alarm.update(steady, 0.877, now)
+        if alarm.level(now) is not Level.OK:
+            assert now < 12.6
+            assert "; all are behind their limits, ERROR ends within " in advice(
+                alarm, steady, 0.877, now
+            )
+    assert alarm.state(3610.0) is AlarmState.RETURNED
+
+
+QUANTITIES = st.fixed_dictionaries(
+    {
+        MARGIN.name: st.floats(0.0, 200.0) | st.sampled_from([math.inf, math.nan]),
+        MARGIN_PERCENT.name: st.floats(0.0, 10.0) | st.sampled_from([math.inf, math.nan]),
+        TIME.name: st.floats(0.0, 60.0) | st.sampled_from([math.inf, math.nan]),
+        ECCENTRICITY.name: st.floats(0.6, 1.0) | st.just(math.nan),
+    }
+)
+#: Where each limit of WARN and ERROR stands, and what a reading must pass to be behind it.
+STANDING = {
+    MARGIN.name: ((60.0, 66.0), (20.0, 22.0)),
+    MARGIN_PERCENT.name: ((3.0, 3.3), (1.0, 1.1)),
+    TIME.name: ((30.0, 33.0), (10.0, 11.0)),
+    ECCENTRICITY.name: ((0.9, 0.81), (0.95, 0.855)),
+}
+
+
+@given(
+    steps=st.lists(
+        st.one_of(
+            st.tuples(QUANTITIES, st.floats(0.0, 5.0)),
+            st.sampled_from(["acknowledge", "reset", "restart"]),
+        ),
+        max_size=30,
+    ),
+    latch=st.booleans(),
+)
+def test_no_level_is_held_by_nothing(steps, latch):
+    """But by a limit that was passed and not yet left, a delay or the latch, and it says so."""
+    settings = AlarmSettings(margin_warn_percent=3.0, margin_error_percent=1.0, latch=latch)
+    alarm, now = JumpAlarm(settings), 0.0
+    passed = {level: set() for level in (Level.WARN, Level.ERROR)}
+    left = dict.fromkeys(passed, -math.inf)  # when the last limit was left
+    for step in steps:
+        if step == "restart":
+            alarm = JumpAlarm.from_dict(settings, json.loads(json.dumps(alarm.to_dict(now))), now)
+            left = dict.fromkeys(left, now)  # delays begin anew
+        elif isinstance(step, str):
+            getattr(alarm, step)()
+        else:
+            given_now, pause = step
+            now += pause
+            alarm.update(unknown_outlook(400.0, 1.0), math.nan, now, given_now)
+            for level, held in passed.items():
+                before = set(held)
+                for name, reading in given_now.items():
+                    limit, release = STANDING[name][level - 1]
+                    sign = 1.0 if name == ECCENTRICITY.name else -1.0
+                    if sign * reading > sign * limit:
+                        held.add(name)
+                    elif sign * reading < sign * release:
+                        held.discard(name)
+                left[level] = now if before and not held else left[level]
+        level = alarm.level(now)
+        sentence = advice(alarm, unknown_outlook(400.0, 1.0), math.nan, now)
+        if level is Level.OK:
+            continue
+        assert {cause.limit.name for cause in alarm.causes(now)} == passed[level]
+        if passed[level]:
+            assert sentence.count("its limit") == len(passed[level])
+        elif now < left[level] + settings.off_delay:
+            assert f"{level.name} ends within" in sentence
+        else:
+            assert latch
+            assert "the warning has gone" in sentence
+
+
+def test_an_alarm_of_an_older_state_file_names_no_limits():
+    """What is known then decides, after the delay."""
+    data = after(AlarmSettings(), 10.0, 10.0).to_dict(2.0)
+    del data["limits"]
+    alarm = JumpAlarm.from_dict(AlarmSettings(), data, 0.0)
+    alarm.update(below_a_jump(500.0), 0.5, 0.0)
+    assert alarm.level(0.0) is Level.ERROR
+    alarm.update(below_a_jump(500.0), 0.5, 3.0)
+    assert alarm.level(3.0) is Level.OK
 
 
 @given(
@@ -215,6 +318,8 @@ def test_state_survives_a_restart(margins, acknowledged, shelved, further):
     [
         ({"warn": None}, "warn must be a mapping with the keys present, active, .* not nothing"),
         ({"error": {}}, "error.present is missing: whether the condition held"),
+        ({"limits": {"warn": 3}}, "limits.warn must be a mapping, not 3"),
+        ({"limits": {"error": {"time": "1"}}}, "limits.error.time must be a finite number, not"),
         ({"shelf": {"remaining": -1.0}}, r"shelf.remaining must be a finite number \[s\] of at"),
         ({"shelf": {"remaining": math.inf}}, r"shelf.remaining must be a finite number \[s\] of"),
     ],
@@ -307,10 +412,10 @@ def test_sentence_for_each_state():
     near = (
         "Jump up to eccentricity 0.93 expected at 4000 rpm, 10 rpm (0.3 %) above the present speed"
     )
+    near += "; the margin to the jump is below its limit of 20 rpm"
     assert advice(alarm, below_a_jump(10.0), 0.5, 0.0) == f"{near}; to be acknowledged"
     alarm.acknowledge()
     assert advice(alarm, below_a_jump(10.0), 0.5, 0.0) == f"{near}; acknowledged"
-    assert advice(alarm, far, 0.5, 0.5) == "No jump ahead any more; acknowledged"
     alarm.update(far, 0.5, 1.0)
     gone = "No jump ahead; the warning has gone, is acknowledged and to be reset"
     assert advice(alarm, far, 0.5, 1.0) == gone
