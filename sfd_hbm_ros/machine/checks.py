@@ -43,7 +43,8 @@ def _check_shaft(machine: Machine) -> None:
         if segment.material not in machine.materials:
             names = [material.name for material in machine.materials]
             problem = not_one_of("machine's materials", names, segment.material.name)
-            raise MachineError(problem, f"shaft.{index}.material")
+            wanted = "must be one of the machine's materials"
+            raise MachineError(problem, f"shaft.{index}.material", discreet=wanted)
 
 
 def _check_names(machine: Machine) -> None:
@@ -63,7 +64,8 @@ def _check_nodes(machine: Machine) -> None:
     for part in stations:
         if part.node > last:
             problem = f"must be a node of the shaft, 0 to {last}, not {show(part.node)}"
-            raise MachineError(problem, f"{part.where}.node")
+            wanted = "must be a node of the shaft"
+            raise MachineError(problem, f"{part.where}.node", discreet=wanted)
 
 
 def _check_actions(machine: Machine) -> None:
@@ -72,7 +74,8 @@ def _check_actions(machine: Machine) -> None:
     for part in actions:
         if part.station not in machine.stations:
             problem = not_one_of("stations", machine.stations, part.station)
-            raise MachineError(problem, f"{part.where}.station")
+            wanted = "must be one of the stations"
+            raise MachineError(problem, f"{part.where}.station", discreet=wanted)
     _check_unique(("unbalance", part.station) for part in machine.unbalance)
     _check_unique(("loads", part.station) for part in machine.loads)
 
@@ -92,5 +95,5 @@ def _check_unique(names: Iterable[tuple[str, str]]) -> None:
     for section, name in names:
         if name in sections:
             problem = f"must be given once, but there is {sections[name]}.{name} already"
-            raise MachineError(problem, f"{section}.{name}")
+            raise MachineError(problem, f"{section}.{name}", discreet="must be given once")
         sections[name] = section

@@ -54,7 +54,8 @@ class ShaftSegment(Part):
         super().__post_init__()
         if self.inner_diameter >= self.outer_diameter:
             limit = f"must be below the outer diameter of {self.outer_diameter} m"
-            raise self.error("inner_diameter", f"{limit}, not {self.inner_diameter}")
+            problem = f"{limit}, not {self.inner_diameter}"
+            raise self.error("inner_diameter", problem, "must be below the outer diameter")
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,7 @@ class Damper(Station):
         radius = self.diameter / 2.0
         if self.clearance >= radius:
             problem = f"must be below the journal's radius of {radius} m, not {self.clearance}"
-            raise self.error("clearance", problem)
+            raise self.error("clearance", problem, "must be below the journal's radius")
 
 
 @dataclass(frozen=True)

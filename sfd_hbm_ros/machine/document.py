@@ -6,13 +6,13 @@ Scalars stay text, as written: what is a number is for the rules to say, so that
 
 from __future__ import annotations
 
-import os
 from collections.abc import Hashable
 from typing import Any, NoReturn
 
 import yaml
 
 from sfd_hbm_ros.machine.errors import MachineError, show_key
+from sfd_hbm_ros.machine.safe_file import FilePath, TooLargeError, read_regular, reason
 
 MAX_BYTES = 256 * 1024
 """Room for two thousand shaft segments, and little enough to be parsed within seconds."""
@@ -20,7 +20,7 @@ MAX_BYTES = 256 * 1024
 MAX_DEPTH = 12
 """Twice what a machine file needs."""
 
-FilePath = str | os.PathLike[str]
+_NOT_YAML = "is not YAML"
 
 
 def read_document(path: FilePath) -> Any:
@@ -33,13 +33,11 @@ def read_document(path: FilePath) -> Any:
         documents, a key twice or an alias, or nests too deeply.
     """
     try:
-        with open(path, "rb") as file:
-            content = file.read(MAX_BYTES + 1)
+        content = read_regular(path, MAX_BYTES, follow=True)
+    except TooLargeError:
+        raise MachineError(f"is larger than the {MAX_BYTES // 1024} KiB allowed") from None
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise MachineError(f"cannot be read: {reason}") from None
-    if len(content) > MAX_BYTES:
-        raise MachineError(f"is larger than the {MAX_BYTES // 1024} KiB allowed")
+        raise MachineError(f"cannot be read: {reason(error)}") from None
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:
@@ -53,28 +51,33 @@ def parse(text: str) -> Any:
         data = yaml.load(text, Loader=_StrictLoader)
     except yaml.reader.ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
-        raise MachineError(f"line {line}: {error.reason}") from None
+        raise MachineError(f"line {line}: {error.reason}", discreet=_NOT_YAML) from None
     except yaml.MarkedYAMLError as error:
-        raise MachineError(_sentence(error)) from None
+        raise _error_of(error) from None
     except (ValueError, OverflowError) as error:
         # PyYAML lets pass what chr() raises for escapes beyond Unicode, such as "\U00110000".
-        raise MachineError(f"is not YAML: {error}") from None
+        raise MachineError(f"{_NOT_YAML}: {error}", discreet=_NOT_YAML) from None
     if data is None:
         raise MachineError("is empty")
     return data
 
 
-def _sentence(error: yaml.MarkedYAMLError) -> str:
+def _error_of(error: yaml.MarkedYAMLError) -> MachineError:
     """Return where and why a text is not a YAML document, on one line."""
     mark = error.problem_mark or error.context_mark
     place = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-    reason = ", ".join(part for part in (error.context, error.problem) if part)
-    return f"{place}{reason}".replace("\n", " ")
+    why = ", ".join(part for part in (error.context, error.problem) if part)
+    # PyYAML's own reasons quote the text, while it is not even known whether it is YAML.
+    known = error.discreet if isinstance(error, _RefusedError) else _NOT_YAML
+    return MachineError(f"{place}{why}".replace("\n", " "), discreet=f"{place}{known}")
 
 
-def _error(problem: str, mark: yaml.Mark) -> yaml.MarkedYAMLError:
-    """Return PyYAML's own kind of error, which knows its line."""
-    return yaml.MarkedYAMLError(problem=problem, problem_mark=mark)
+class _RefusedError(yaml.MarkedYAMLError):
+    """YAML that a machine file must not hold, by PyYAML's kind of error, which knows its line."""
+
+    def __init__(self, problem: str, mark: yaml.Mark, discreet: str = "") -> None:
+        super().__init__(problem=problem, problem_mark=mark)
+        self.discreet = discreet or problem
 
 
 class _StrictLoader(yaml.BaseLoader):
@@ -84,12 +87,12 @@ class _StrictLoader(yaml.BaseLoader):
 
     def fetch_alias(self) -> NoReturn:
         """Refuse an alias: with it, a small file can be a huge tree."""
-        raise _error("aliases are not allowed: write the values out", self.get_mark())
+        raise _RefusedError("aliases are not allowed: write the values out", self.get_mark())
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         """Refuse nesting so deep that it would exhaust the stack."""
         if parent is not None and self.depth > MAX_DEPTH:
-            raise _error(f"more than {MAX_DEPTH} levels are not allowed", parent.start_mark)
+            raise _RefusedError(f"more than {MAX_DEPTH} levels are not allowed", parent.start_mark)
         self.depth += 1
         node = super().compose_node(parent, index)
         self.depth -= 1
@@ -105,8 +108,12 @@ class _StrictLoader(yaml.BaseLoader):
         seen = set()
         for key, _ in node.value:
             if not isinstance(key, yaml.ScalarNode):
-                raise _error("a key must be text", key.start_mark)
+                raise _RefusedError("a key must be text", key.start_mark)
             if key.value in seen:
-                raise _error(f"the key {show_key(key.value)} stands twice", key.start_mark)
+                raise _RefusedError(
+                    f"the key {show_key(key.value)} stands twice",
+                    key.start_mark,
+                    "a key stands twice",
+                )
             seen.add(key.value)
         return super().construct_mapping(node, deep)

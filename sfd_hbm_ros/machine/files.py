@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 import yaml
 
-from sfd_hbm_ros.machine.document import FilePath, read_document
+from sfd_hbm_ros.machine.document import read_document
 from sfd_hbm_ros.machine.errors import MachineError
 from sfd_hbm_ros.machine.model import Machine
 from sfd_hbm_ros.machine.parts import plain, read
+from sfd_hbm_ros.machine.safe_file import FilePath
 
 
 def read_machine(path: FilePath) -> Machine:
@@ -30,7 +31,7 @@ def read_machine(path: FilePath) -> Machine:
     try:
         return machine_from_dict(read_document(path))
     except MachineError as error:
-        raise MachineError(f"{path}: {error}") from None
+        raise error.of(path) from None
 
 
 def machine_from_dict(mapping: Mapping[str, Any]) -> Machine:

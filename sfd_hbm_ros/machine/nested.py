@@ -32,9 +32,11 @@ def many(about: str, kind: type[Part], *, least: int = 0, default: object = REQU
     def from_data(data: Any, key: str, materials: Any) -> Parts:
         items = [] if data is None else data
         if not isinstance(items, (list, tuple)):
-            raise MachineError(f"must be a list of mappings, not {show(items)}", key)
+            wanted = "must be a list of mappings"
+            raise MachineError(f"{wanted}, not {show(items)}", key, discreet=wanted)
         if len(items) < least:
-            raise MachineError(f"must be {allowed}, not {show(items)}", key)
+            wanted = f"must be {allowed}"
+            raise MachineError(f"{wanted}, not {show(items)}", key, discreet=wanted)
         return tuple(
             read(kind, item, dotted(key, item_label(item, index)), materials)
             for index, item in enumerate(items)
@@ -53,7 +55,8 @@ def table(about: str, kind: type[Part]) -> Rule:
     def from_data(data: Any, key: str, materials: Any) -> Parts:
         items = {} if data is None else data
         if not (isinstance(items, Mapping) and items):
-            raise MachineError(f"must be {allowed}, not {show(items)}", key)
+            wanted = f"must be {allowed}"
+            raise MachineError(f"{wanted}, not {show(items)}", key, discreet=wanted)
         return tuple(
             read(kind, item, dotted(key, show_key(name)), name=name)
             for name, item in items.items()
@@ -72,7 +75,8 @@ def reference(about: str, kind: type[Part]) -> Rule:
     def from_data(data: Any, key: str, materials: Any) -> Part:
         by_name: dict[Any, Part] = {material.name: material for material in materials}
         if not (isinstance(data, str) and data in by_name):
-            raise MachineError(not_one_of("materials", by_name, data), key)
+            wanted = "must be one of the materials"
+            raise MachineError(not_one_of("materials", by_name, data), key, discreet=wanted)
         return by_name[data]
 
     def to_data(part: Any) -> str:

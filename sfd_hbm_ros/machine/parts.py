@@ -40,7 +40,8 @@ class Part:
             try:
                 converted = rule.convert(value)
             except (ValueError, TypeError, OverflowError):
-                raise self.error(key, f"must be {rule.allowed}, not {show(value)}") from None
+                allowed = f"must be {rule.allowed}"
+                raise self.error(key, f"{allowed}, not {show(value)}", allowed) from None
             object.__setattr__(self, key, converted)
 
     @property
@@ -48,9 +49,9 @@ class Part:
         """Dotted key of the part in a machine file, as far as its own fields tell."""
         return self.place.format(**vars(self))
 
-    def error(self, key: str, problem: str) -> MachineError:
-        """Return the error of one of the part's own keys."""
-        return MachineError(problem, key, self.where)
+    def error(self, key: str, problem: str, discreet: str = "") -> MachineError:
+        """Return the error of one of the part's own keys, see `MachineError`."""
+        return MachineError(problem, key, self.where, discreet)
 
 
 def plain(part: Part) -> dict[str, Any]:
@@ -114,9 +115,14 @@ def _known_keys(data: object, expected: Collection[str], place: str) -> Mapping[
     """Return the data if they are a mapping that has no other keys than those expected."""
     if not isinstance(data, Mapping):
         keys = ", ".join(expected)
-        problem = f"must be a mapping with the keys {keys}, not {show(data)}"
-        raise MachineError(problem, place or "the machine")
+        allowed = f"must be a mapping with the keys {keys}"
+        problem = f"{allowed}, not {show(data)}"
+        raise MachineError(problem, place or "the machine", discreet=allowed)
     for key in data:
+        if key not in expected and not place and not any(known in data for known in expected):
+            # It may be any file, whose first words are none of the reader's business.
+            discreet = f"is no machine file: it has none of the keys {', '.join(expected)}"
+            raise MachineError(f"{show_key(key)} {unknown(key, expected)}", discreet=discreet)
         if key not in expected:
             raise MachineError(unknown(key, expected), show_key(key), place)
     return data

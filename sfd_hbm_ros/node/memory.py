@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
 from dataclasses import replace
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.lifecycle import LifecycleNode
 
+from sfd_hbm_ros.machine.safe_file import put_aside, reason
 from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
@@ -23,6 +23,7 @@ from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
 from sfd_hbm_ros.response.warning.settings import Level
 
 _PERIOD = 1.0  # s between two savings without a change worth more
+_LONGEST = 2.0  # s for which the node waits for a disk as it gives up its machine
 
 
 class Memory:
@@ -52,6 +53,7 @@ class Memory:
         self._state: State | None = None
         self._path = ""
         self._refused = ""
+        self._stays = ""  # why a refused file is where it was, so that nothing is written
         self._failed = ""
         self._saved: tuple[object, ...] = ()
         self._saved_at = 0.0
@@ -66,34 +68,35 @@ class Memory:
     def restore(self, model: Model) -> None:
         """Begin with what is in the state file; one that is of no use is reported."""
         self._path, self._state = self._parameters["state_file"], None
-        self._refused = self._failed = ""
+        self._refused = self._stays = self._failed = ""
         if not self._path:
             return
         try:
             self._state = load_state(self._path, model.machine)
             if self._state is not None:
                 self._restore(model, self._state)
-        except Exception as error:  # whatever is in it, the node goes on without
-            self._refused, self._state = str(error), None
-            self._keep_refused()
-            self._node.get_logger().warning(f"state file {self._refused}")
+        except StateFileError as error:
+            self._refuse(str(error))
+        except Exception:  # whatever is in it, which is not repeated, the node goes on without
+            self._refuse(f"{self._path}: refused: its state does not fit the machine")
 
     def save(self) -> None:
         """Save the state now, and wait until that is done."""
         self._collect(wait=True)
-        self._write()
-        self._collect(wait=True)
+        if self._writing is None:
+            self._write()
+            self._collect(wait=True)
 
     def release(self) -> None:
         """Save the state of the machine that is given up."""
         self.save()
         self._path, self._state = "", None
-        self._refused = self._failed = ""
+        self._refused = self._stays = self._failed = ""
 
     def added_to(self, status: Status) -> Status:
         """Return the status of the model with how its memory fares."""
         values = {**status.values, "state_file": self._path}
-        problem = "; ".join(part for part in (self._refused, self._failed) if part)
+        problem = "; ".join(part for part in (self._refused, self._stays, self._failed) if part)
         if not problem:
             return replace(status, values=values)
         values["state_file: problem"] = problem
@@ -115,11 +118,18 @@ class Memory:
         self._refused = f"{self._path}: the machine has changed, so that its branch is not known"
         self._node.get_logger().warning(f"state file {self._refused}")
 
-    def _keep_refused(self) -> None:
-        """Put the refused file aside, lest it be overwritten."""
-        with suppress(OSError):  # that it cannot be written will be told
-            if os.path.isfile(self._path):
-                os.replace(self._path, f"{self._path}.refused")
+    def _refuse(self, problem: str) -> None:
+        """Go on without the file, and put it aside lest it be overwritten."""
+        self._state, self._refused = None, problem
+        try:
+            put_aside(self._path)
+        except FileNotFoundError:
+            pass
+        except (OSError, ValueError) as error:
+            why = f"it could not be put aside ({reason(error)})"
+            self._stays = f"nothing is written while it is there, as {why}"
+        problem = "; ".join(part for part in (self._refused, self._stays) if part)
+        self._node.get_logger().warning(f"state file {problem}")
 
     def _take(self, prediction: Prediction, stamp: int) -> None:
         """Remember a prediction, and save it if it is time."""
@@ -162,6 +172,9 @@ class Memory:
         if not self._path or model is None or self._state is None:
             return
         self._saved, self._saved_at, self._written = self._key, now, self._state
+        if self._stays and os.path.lexists(self._path):
+            return
+        self._stays = ""
         state = replace(self._state, alarm=self._watch.alarm.to_dict(now))
         self._writing = self._thread.submit(save_state, self._path, model.machine, state)
 
@@ -171,7 +184,10 @@ class Memory:
             return
         failed = ""
         try:
-            self._writing.result()
+            self._writing.result(_LONGEST)
+        except TimeoutError:
+            self._failed = f"{self._path}: not yet written after {_LONGEST:g} s"
+            return
         except StateFileError as error:
             failed = str(error)
             self._node.get_logger().error(f"state file {failed}", throttle_duration_sec=_PERIOD)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from sfd_hbm_ros.machine import Machine, MachineError, override_all
-from sfd_hbm_ros.machine.errors import show_key, unknown
+from sfd_hbm_ros.machine import Machine, MachineError, get, override_all
+from sfd_hbm_ros.machine.errors import hint, show, show_key
 from sfd_hbm_ros.machine.oil import Oil
 from sfd_hbm_ros.node.schema import SCHEMA, ParameterError, Spec, machine_schema
 from sfd_hbm_ros.node.unbalance import LIST_SCHEMA, LISTS, ListSpec, agreed, everywhere, listed
@@ -35,8 +36,10 @@ class Parameters:
         self._refused: dict[str, str] = {}
         self._specs = {spec.name: spec for spec in SCHEMA}
         self._machine: dict[str, Spec | ListSpec] = {}
+        self._file: Machine | None = None  # what the machine file holds
         for spec in SCHEMA:
             self._declare(spec, self._first_value(spec))
+        self._first_file = self["machine_file"]
         self._warn(name for name in self._given if name.partition(".")[0] not in _SECTIONS)
 
     def __getitem__(self, name: str) -> Any:
@@ -54,6 +57,30 @@ class Parameters:
         if self._refused:
             raise ParameterError("; ".join(self._refused.values()))
         self.check_together()
+
+    def check_file(self, path: str) -> None:
+        """Check that a machine file may be read: that given at the start, or one below the folder.
+
+        Raises
+        ------
+        ParameterError
+            If it may not.
+        """
+        folder = self["machine_folder"]
+        if path == self._first_file:
+            return
+        if not folder:
+            raise ParameterError(
+                f"machine_file is fixed, as no machine_folder is set: {_restart('machine_file')}"
+            )
+        try:
+            below = os.path.realpath(path).startswith(os.path.join(os.path.realpath(folder), ""))
+        except (OSError, ValueError):
+            below = False
+        if not below:
+            raise ParameterError(
+                f"machine_file must be a file below machine_folder, {folder}, not {show(path)}"
+            )
 
     def check_together(self, parameters: Iterable[Parameter] = ()) -> None:
         """Check that the parameters go together when some have been set.
@@ -109,7 +136,7 @@ class Parameters:
         ParameterError, MachineError
             If a value given at the start is not allowed.
         """
-        machine = everywhere(machine)
+        self._file = machine = everywhere(machine)
         single = list(machine_schema(machine))
         schema: list[Spec | ListSpec] = [*single, *LIST_SCHEMA]
         default = {spec.name: spec.default for spec in single}
@@ -131,22 +158,35 @@ class Parameters:
         """Undeclare the values of the machine."""
         for name in self._machine:
             self._node.undeclare_parameter(name)
-        self._machine = {}
+        self._machine, self._file = {}, None
 
     def converted(self, parameters: Iterable[Parameter]) -> list[Parameter]:
         """Return parameters that are to be set, in the types that they were declared with.
 
-        Those of unbalances come in both of their ways.
+        Those of unbalances come in both of their ways, and those that are fixed not at all: they
+        can only be as they are.
 
         Raises
         ------
         ParameterError
-            If one is unknown, of the wrong type or out of its range, or lists do not go together.
+            If one is unknown, fixed, of the wrong type or out of its range, or lists do not go
+            together.
         """
-        taken = {one.name: self._converted(one) for one in parameters}
+        given = [self._converted(one) for one in parameters]
+        taken = {one.name: one for one in given if not self._read_only(one.name)}
         known = {name: self[name] for name in self._machine}
         values = agreed({name: one.value for name, one in taken.items()}, known)
         return [taken.get(name) or _parameter(name, value) for name, value in values.items()]
+
+    def check(self, parameter: Parameter) -> None:
+        """Check a parameter that is to be set, whatever else is.
+
+        Raises
+        ------
+        ParameterError
+            If it is unknown, fixed, of the wrong type or out of its range.
+        """
+        self._converted(parameter)
 
     def machine_values(self, parameters: Iterable[Parameter]) -> dict[str, Any]:
         """Return the values of the machine among parameters, by their paths."""
@@ -160,13 +200,35 @@ class Parameters:
 
     def _converted(self, parameter: Parameter) -> Parameter:
         """Return one parameter in the type that it was declared with."""
-        known = self._specs | self._machine
-        if parameter.name in known:
-            value = known[parameter.name].convert(parameter.value)
-            return _parameter(parameter.name, value)
-        if self._node.has_parameter(parameter.name):  # of every node, as use_sim_time is
-            return parameter
-        raise ParameterError(f"{show_key(parameter.name)} {unknown(parameter.name, known)}")
+        name, known = parameter.name, self._known
+        if name in known:
+            parameter = _parameter(name, known[name].convert(parameter.value))
+        elif not self._node.has_parameter(name):  # of every node, as use_sim_time is
+            raise ParameterError(f"{show_key(name)} {self._unknown(name)}")
+        if self._read_only(name) and parameter.value != self[name]:
+            raise ParameterError(f"{name} is fixed: {_restart(name)}")
+        if name == "machine_file" and parameter.value != self[name]:
+            self.check_file(parameter.value)
+        return parameter
+
+    @property
+    def _known(self) -> dict[str, Spec | ListSpec]:
+        return self._specs | self._machine
+
+    def _read_only(self, name: str) -> bool:
+        return bool(self._node.describe_parameter(name).read_only)
+
+    def _unknown(self, name: str) -> str:
+        """Say why there is no parameter of a name, and what else there is to do."""
+        if self._file is not None and _holds(self._file, name):
+            return (
+                "is fixed while there is a machine: change it in the machine file, then clean the "
+                "node up and configure it"
+            )
+        if self._file is None and name.partition(".")[0] in _SECTIONS:
+            return "is unknown while the node is unconfigured: it comes with the machine file"
+        near = hint(name, self._known)
+        return f"is unknown{near or '; `ros2 param list` shows those that there are'}"
 
     def _first_value(self, spec: Spec) -> Any:
         """Return the value given at the start, or the default if that is refused."""
@@ -182,12 +244,25 @@ class Parameters:
 
     def _warn(self, given: Iterable[str]) -> None:
         """Warn of parameters given at the start that the node does not know."""
-        known = self._specs | self._machine
         for name in given:
-            if name not in known and not self._node.has_parameter(name):
+            if name not in self._known and not self._node.has_parameter(name):
                 self._node.get_logger().warning(
-                    f"parameter {show_key(name)} {unknown(name, known)}; it has no effect"
+                    f"parameter {show_key(name)} {self._unknown(name)}; it has no effect"
                 )
+
+
+def _restart(name: str) -> str:
+    """Say how to change what is read at the start only."""
+    return f"it is read when the node starts, so restart the node with -p {name}:=VALUE"
+
+
+def _holds(machine: Machine, path: str) -> bool:
+    """Return whether a machine file has an entry."""
+    try:
+        get(machine, path)
+    except MachineError:
+        return False
+    return True
 
 
 def _parameter(name: str, value: Any) -> Parameter:

@@ -12,7 +12,7 @@ from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 
 from sfd_hbm_ros.kernels import load_kernels
-from sfd_hbm_ros.machine import read_machine
+from sfd_hbm_ros.machine import Machine, MachineError, read_machine
 from sfd_hbm_ros.node import diagnostics, guard
 from sfd_hbm_ros.node.changes import Changes
 from sfd_hbm_ros.node.curves import Curves
@@ -78,7 +78,8 @@ class Predictor(LeanNode):
             path = self._known["machine_file"]
             if not path:
                 raise ParameterError("machine_file must be the path of a machine file, not empty")
-            machine = self._known.adopt(read_machine(path))
+            self._known.check_file(path)
+            machine = self._known.adopt(_read_machine(path))
             self._watch.alarm.settings = self._known.alarm_settings()
             self._memory.restore(self._operation.begin(machine))
         except Exception as error:  # whatever it is, the node stays up and says it
@@ -138,6 +139,8 @@ class Predictor(LeanNode):
             converted = self._known.converted(parameter_list)
         except ParameterError as error:
             return SetParametersResult(successful=False, reason=str(error))
+        if not converted:  # as all are as they were
+            return SetParametersResult(successful=True)
         return super().set_parameters_atomically(converted)
 
     def caught(self, error: Exception) -> None:
@@ -178,6 +181,14 @@ class Predictor(LeanNode):
                 time.monotonic(),
             ),
         ]
+
+
+def _read_machine(path: str) -> Machine:
+    """Read a machine file; what it holds is not told, as everybody can read what the node says."""
+    try:
+        return read_machine(path)
+    except MachineError as error:
+        raise ParameterError(error.discreet()) from None
 
 
 def main() -> int:

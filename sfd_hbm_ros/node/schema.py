@@ -15,7 +15,15 @@ from sfd_hbm_ros.response.warning.settings import AlarmSettings
 
 Value = bool | int | float | str
 
-_WORDS = {bool: "true or false", int: "an integer", float: "a number", str: "text"}
+LONGEST_TEXT = 1000
+"""Characters that a text may have; a path or a frame is shorter."""
+
+_WORDS = {
+    bool: "true or false",
+    int: "an integer",
+    float: "a number",
+    str: f"text of at most {LONGEST_TEXT} characters",
+}
 
 
 class ParameterError(ValueError):
@@ -87,7 +95,9 @@ class Spec:
 
     def _holds(self, value: Value) -> bool:
         """Return whether a value lies in the range; NaN lies in none."""
-        if not self._limited or isinstance(value, str):
+        if isinstance(value, str):
+            return len(value) <= LONGEST_TEXT
+        if not self._limited:
             return True
         return self.least <= value <= self.most
 
@@ -101,6 +111,14 @@ def _spec(part: object, name: str, key: str, rule: Rule) -> Spec:
     return Spec(name, getattr(part, key), f"{rule.about}: {rule.allowed}")
 
 
+# Others on the network may set parameters, but not name any file of the node's user.
+_MACHINE_FILE = (
+    "path of the machine file; while the node is unconfigured it can be changed to one below "
+    "machine_folder"
+)
+_MACHINE_FOLDER = "folder below which machine_file can be changed; empty for not at all"
+_STATE_FILE = "path of the file that outlives a restart, empty for none"
+
 _CURVE_HANG = "time without a new point of the curve after which its process is replaced"
 
 _OIL_GRADE = "ISO viscosity grade of the oil whose temperature arrives, 0 for none"
@@ -108,12 +126,9 @@ _OIL_VISCOSITY = "kinematic viscosity of an oil without a grade at {} deg C, 0 f
 _MEASURED_WARN = "difference of the measured orbit from the predicted one from which to warn"
 
 SCHEMA = (
-    Spec(
-        "machine_file",
-        "",
-        "path of the machine file; it can be changed while the node is unconfigured",
-    ),
-    Spec("state_file", "", "path of the file that outlives a restart, empty for none; as above"),
+    Spec("machine_file", "", _MACHINE_FILE),
+    Spec("machine_folder", "", _MACHINE_FOLDER, read_only=True),
+    Spec("state_file", "", _STATE_FILE, read_only=True),
     Spec("frame_id", "rotor", "frame of x and y in the headers of what is published"),
     Spec("harmonics", 7, "highest harmonic of the speed in the prediction", "", 1, 31),
     Spec("publish_rate", 100.0, "most predictions a second", "Hz", 0.1, 1000.0),

@@ -25,6 +25,10 @@ STATIONS, MAGNITUDES, PHASES = LISTS = tuple(
 )
 
 
+MOST = 10_000
+"""Items of a list that is too long; no machine has as many stations."""
+
+
 @dataclass(frozen=True)
 class ListSpec:
     """What a list parameter means and may be, as `Spec` for a single value.
@@ -62,9 +66,9 @@ class ListSpec:
         ParameterError
             If it is no list, or an item is of another kind.
         """
-        items = list(value) if isinstance(value, (list, tuple, array)) else [None]
+        items = list(value[:MOST]) if isinstance(value, (list, tuple, array)) else [None]
         taken = [float(one) if self.kind is float and type(one) is int else one for one in items]
-        if any(type(one) is not self.kind for one in taken):
+        if any(type(one) is not self.kind for one in taken) or len(items) == MOST:
             raise ParameterError(f"{self.name} must be {self.allowed}, not {show(value)}")
         return taken
 

@@ -99,7 +99,10 @@ def test_unreadable_files_are_refused(tmp_path: Path) -> None:
     not_utf8.write_bytes("name: Läufer\n".encode("latin-1"))
     assert refusal(not_utf8) == "must be UTF-8, which it is not at byte 7"
     assert refusal(tmp_path / "missing.yaml") == "cannot be read: No such file or directory"
-    assert refusal(tmp_path) == "cannot be read: Is a directory"
+    assert refusal(tmp_path) == "cannot be read: not a regular file"
+    os.mkfifo(tmp_path / "pipe")
+    assert refusal(tmp_path / "pipe") == "cannot be read: not a regular file"
+    assert refusal(Path("/dev/zero")) == "cannot be read: not a regular file"
     assert refusal(not_utf8 / "inside.yaml") == "cannot be read: Not a directory"
     assert refusal(Path("a\0b")) == "cannot be read: embedded null byte"
 

@@ -161,8 +161,8 @@ def test_values_are_set_together_and_predicted_at_once(predictor):
         ({"publish_rate": [1.0, 2.0]}, "publish_rate must be a number"),
         ({"stale_after": math.inf}, "stale_after must be a number"),
         ({"dampers.damper_1.viscosty": 0.1}, "did you mean dampers.damper_1.viscosity?"),
-        ({"machine_file": "other.yaml"}, "while the node is unconfigured"),
-        ({"autostart": False}, "read-only"),
+        ({"machine_file": "other.yaml"}, "machine_file is fixed, as no machine_folder is set"),
+        ({"autostart": False}, "autostart is fixed: it is read when the node starts"),
     ],
 )
 def test_values_are_refused_together_with_the_reason(predictor, bad, reason):

@@ -77,7 +77,10 @@ def test_parameter_file_as_people_write_it(graph, start, tmp_path):
 def test_bad_machine_file_and_parameter_can_be_amended(graph, start, tmp_path):
     bad = tmp_path / "bad.yaml"
     bad.write_text(PAPER_ROTOR.read_text().replace("clearance: 2.54e-4", "clearance: .nan"))
-    process = start("-p", f"machine_file:={bad}", "-p", "harmonics:=0", "-r", "__node:=amended")
+    process = start(
+        *("-p", f"machine_file:={bad}", "-p", "harmonics:=0", "-r", "__node:=amended"),
+        *("-p", f"machine_folder:={PAPER_ROTOR.parent}"),
+    )
     remote = Remote(graph, "/amended")
     remote.until_status("Model", ERROR, "harmonics must be an integer from 1 to 31, not 0")
     assert remote.state() == "unconfigured"

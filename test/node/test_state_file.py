@@ -118,8 +118,11 @@ def torn(part: float):
         (torn(0.1), "torn, it is not whole JSON text"),
         (torn(0.5), "torn, it is not whole JSON text"),
         (torn(0.99), "torn, it is not whole JSON text"),
-        (lambda path: path.write_text(path.read_text().replace("1", "2", 1)), "of version 2"),
-        (lambda path: path.write_bytes(os.urandom(5000)), "'utf-8' codec"),
+        (
+            lambda path: path.write_text(path.read_text().replace("1", "2", 1)),
+            "of a version",
+        ),
+        (lambda path: path.write_bytes(b"\xff" + os.urandom(5000)), "not UTF-8 text"),
         (foreign, "foreign, the state of another machine"),
     ],
     ids=["empty", "begun", "half", "almost whole", "newer", "random", "foreign"],
@@ -136,15 +139,21 @@ def test_a_file_of_no_use_is_reported_and_put_aside(predictor, spoil, reason):
     predictor.until_saved(lambda state: state.speed == BOTH)
 
 
-@pytest.mark.parametrize("make", [os.mkdir, os.mkfifo, partial(os.symlink, "/dev/full")])
-def test_what_is_no_file_is_reported_and_left_alone(predictor, make):
+@pytest.mark.parametrize(
+    ("make", "what"),
+    [
+        (os.mkdir, "not a regular file"),
+        (os.mkfifo, "not a regular file"),
+        (partial(os.symlink, "/dev/full"), "a link, which is not followed"),
+    ],
+)
+def test_what_is_no_file_is_reported_and_left_alone(predictor, make, what):
     predictor.forget()
     file = predictor.file
     make(file)
     before = os.lstat(file)
     predictor.recall()
-    predictor.says(WARN, f"{file}: refused: not a regular file")
-    predictor.says(WARN, f"{file}: cannot be written: not a regular file")
+    predictor.says(WARN, f"{file}: refused: {what}; nothing is written while it is there")
     predictor.predicts(LOWER)
     assert os.path.samestat(os.lstat(file), before)
     os.rmdir(file) if file.is_dir() else os.unlink(file)

@@ -213,7 +213,7 @@ def shelve(remote: Remote, hide: bool) -> None:
         ({"speed.min": 500.0}, "speed.max must be above speed.min, 500 rad/s, not 500"),
         ({"speed.max": 0.0}, "speed.max must be a number from 0.1 to 100000 [rad/s]"),
         ({"curve.attempts": 0}, "curve.attempts must be an integer from 1 to 100"),
-        ({"state_file": "other"}, "state_file can only be changed while"),
+        ({"state_file": "other"}, "state_file is fixed: it is read when the node starts"),
     ],
 )
 def test_values_that_do_not_go_together_are_refused(predictor, values, reason):

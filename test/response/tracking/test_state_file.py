@@ -4,12 +4,15 @@ import errno
 import json
 import os
 from dataclasses import replace
+from hashlib import sha256
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
-from sfd_hbm_ros.machine import override
+from sfd_hbm_ros.machine import override, safe_file
+from sfd_hbm_ros.machine.safe_file import put_aside
 from sfd_hbm_ros.response.tracking.state import State, from_plain, restore, to_plain
 from sfd_hbm_ros.response.tracking.state_file import StateFileError, load_state, save_state
 
@@ -115,7 +118,7 @@ def test_numbers_of_the_machine_may_have_changed(path):
     [
         ("", "torn, it is not whole JSON text"),
         ("[1, 2]", "not a state file"),
-        ('{"format": "sfd_hbm_ros state", "version": 2}', "of version 2, not 1"),
+        ('{"format": "sfd_hbm_ros state", "version": 2}', "of a version other than 1"),
         ("[" * 100_000, "torn, it is not whole JSON text"),
     ],
 )
@@ -127,22 +130,82 @@ def test_other_files_are_refused(path, text, reason):
 
 def test_what_is_no_file_is_refused(tmp_path):
     os.mkfifo(tmp_path / "pipe")
-    os.symlink(os.devnull, tmp_path / "device")
-    for path in (tmp_path, tmp_path / "pipe", tmp_path / "device"):
+    for path in (tmp_path, tmp_path / "pipe", Path(os.devnull), Path("/"), Path(".."), Path("")):
         before = os.stat(path)
         with pytest.raises(StateFileError, match="refused: not a regular file"):
             load_state(path, PAPER)
-        with pytest.raises(StateFileError, match="cannot be written: not a regular file"):
+        with pytest.raises(StateFileError, match="cannot be written: "):
             save_state(path, PAPER, STATE)
         assert os.path.samestat(os.stat(path), before)
 
 
-def test_file_behind_a_link_is_replaced_and_not_the_link(path, tmp_path):
+@pytest.mark.parametrize("name", ["x" * 300, "a\0b", "\ud800"])
+def test_names_that_no_file_can_have_are_told(tmp_path, name):
+    with pytest.raises(StateFileError, match="cannot be written: "):
+        save_state(tmp_path / name, PAPER, STATE)
+    assert not os.listdir(tmp_path)
+
+
+def test_no_link_is_followed(path, tmp_path):
+    before = path.read_bytes()
     link = tmp_path / "link.json"
     link.symlink_to(path)
-    save_state(link, PAPER, replace(STATE, stamp=5))
+    with pytest.raises(StateFileError, match="refused: a link, which is not followed"):
+        load_state(link, PAPER)
+    with pytest.raises(StateFileError, match="cannot be written: a link, which is not followed"):
+        save_state(link, PAPER, STATE)
+    other = tmp_path / "other.json"
+    (tmp_path / "other.json.part").symlink_to(path)
+    with pytest.raises(StateFileError, match="cannot be written: a link, which is not followed"):
+        save_state(other, PAPER, STATE)
+    assert not other.exists()
     assert link.is_symlink()
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize("name", ["state.json", "state.json.part"])
+def test_nothing_is_replaced_that_was_not_written_here(path, name):
+    there = path.with_name(name)
+    there.write_text('{"format": "mine"}')
+    with pytest.raises(StateFileError, match=f"cannot be written: {name} is there already"):
+        save_state(path, PAPER, STATE)
+    assert there.read_text() == '{"format": "mine"}'
+
+
+@pytest.mark.parametrize("part", [0.0, 0.02, 0.5])
+def test_what_a_killed_process_left_half_written_is_replaced(path, part):
+    whole = path.read_bytes()
+    path.with_name("state.json.part").write_bytes(whole[: int(part * len(whole))])
+    save_state(path, PAPER, replace(STATE, stamp=5))
     assert load_state(path, PAPER).stamp == 5
+    assert os.listdir(path.parent) == ["state.json"]
+
+
+def test_refused_files_are_all_kept(path, monkeypatch):
+    monkeypatch.setattr(safe_file, "MOST_ASIDE", 3)
+    path.with_name("state.json.refused").symlink_to(path.with_name("victim"))
+    for number in (1, 2):
+        path.write_text(f"mine {number}")
+        aside = put_aside(path)
+        assert aside.name == f"state.json.refused.{number}"
+        assert aside.read_text() == f"mine {number}"
+    path.write_text("mine 3")
+    with pytest.raises(ValueError, match="3 refused files are there already"):
+        put_aside(path)
+    assert path.read_text() == "mine 3"
+    assert not path.with_name("victim").exists()
+
+
+def test_no_message_repeats_what_a_file_holds(path):
+    content = json.loads(path.read_text())
+    del content["checksum"]
+    for key in ("harmonics", "coefficients", "speed", "loads"):
+        spoilt = {**content, "state": {**content["state"], key: "SECRET"}}
+        text = json.dumps(spoilt, sort_keys=True, separators=(",", ":"))
+        path.write_text(json.dumps({**spoilt, "checksum": sha256(text.encode()).hexdigest()}))
+        with pytest.raises(StateFileError, match="refused: no state") as refused:
+            load_state(path, PAPER)
+        assert "SECRET" not in str(refused.value)
 
 
 def test_folder_that_is_none_is_told(path):
