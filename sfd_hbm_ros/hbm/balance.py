@@ -5,6 +5,7 @@ damper, flattened row by row. The films' forces are evaluated at time samples an
 (alternating frequency/time), and so are their derivatives: nothing is differenced.
 """
 
+import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -55,6 +56,12 @@ class HarmonicBalance:
     def clearances(self) -> Array:
         """Clearance of each journal coordinate [m], (n,)."""
         return np.repeat([film.clearance for film in self.films], 2)
+
+    def with_harmonics(self, harmonics: Harmonics) -> "HarmonicBalance":
+        """The same machine, on the same condensation, balanced in other harmonics."""
+        other = copy.copy(self)
+        other.harmonics = harmonics
+        return other
 
     def at(self, speed: float) -> "Equations":
         """Equations at a rotor speed [rad/s].

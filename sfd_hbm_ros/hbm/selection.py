@@ -76,9 +76,7 @@ class SelectedBalance:
     def balance(self, group: tuple[int, ...]) -> HarmonicBalance:
         """The machine balanced in a group of the trial group's multiples."""
         if group not in self._balances:
-            self._balances[group] = HarmonicBalance(
-                self.full.machine, self.trial.only(group), self.full.model
-            )
+            self._balances[group] = self.full.with_harmonics(self.trial.only(group))
         return self._balances[group]
 
     def neglect(self, group: tuple[int, ...], speed: float, x: Array) -> Neglect:

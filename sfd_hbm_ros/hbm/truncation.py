@@ -1,0 +1,163 @@
+"""How many harmonics a response needs, by an estimate of what those left out would add.
+
+A solution of K harmonics is put into the equations of K + 4. One step of Newton's method there is
+the difference between both solutions but for terms of second order (Deuflhard 2011, Newton Methods
+for Nonlinear Problems, sec. 2.1), and as the coefficients decay with the order, nearly the distance
+from the solution of all harmonics. Four orders hold two of every parity: the response of symmetric
+films has odd orders alone.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from sfd_hbm_ros.hbm.balance import HarmonicBalance
+from sfd_hbm_ros.hbm.harmonics import Harmonics
+from sfd_hbm_ros.hbm.solution import Solution
+from sfd_hbm_ros.hbm.solve import solve
+from sfd_hbm_ros.machine import Machine
+from sfd_hbm_ros.rotor import ResonanceError
+
+_AHEAD = 4  # orders beyond the highest, in which the step is taken
+_GROWTH = 1.5  # of the highest order, where the estimate is too great
+
+
+@dataclass(frozen=True)
+class HarmonicsOptions:
+    """How many harmonics are taken.
+
+    Parameters
+    ----------
+    tolerance : float
+        Truncation error that is allowed, of the clearance.
+    fewest, most : int
+        Limits of the highest order. The most bounds the cost, which grows with its square.
+    revolutions : int
+        Revolutions in a period, see `Harmonics`.
+
+    Raises
+    ------
+    ValueError
+        If a setting is out of its range.
+    """
+
+    tolerance: float = 1e-5
+    fewest: int = 7
+    most: int = 63
+    revolutions: int = 1
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.tolerance < 1.0:
+            raise ValueError(f"tolerance: {self.tolerance} is not allowed, it must be in (0, 1)")
+        if not 1 <= self.fewest <= self.most:
+            raise ValueError(
+                f"harmonics: {self.fewest} and {self.most} are not allowed, the fewest must be at "
+                "least 1 and the most not less"
+            )
+
+    def first(self) -> Harmonics:
+        """The harmonics with which one begins."""
+        return Harmonics(self.fewest, revolutions=self.revolutions)
+
+    def more(self, harmonics: Harmonics) -> Harmonics | None:
+        """Half as many again, up to the most; None where these are the most."""
+        if harmonics.highest >= self.most:
+            return None
+        highest = min(self.most, int(np.ceil(_GROWTH * harmonics.highest)))
+        return Harmonics(highest, revolutions=harmonics.revolutions)
+
+
+class AccurateSolution(NamedTuple):
+    """A solution with what it was found by.
+
+    Attributes
+    ----------
+    balance : HarmonicBalance
+        The machine and the harmonics that were taken.
+    solution : Solution
+        The solution.
+    error : float
+        Its truncation error, of the clearance; not a number where it has not converged.
+    """
+
+    balance: HarmonicBalance
+    solution: Solution
+    error: float
+
+
+def truncation_error(balance: HarmonicBalance, solution: Solution) -> float:
+    """Estimate how far a solution is from that of all harmonics.
+
+    Parameters
+    ----------
+    balance : HarmonicBalance
+        The machine.
+    solution : Solution
+        A converged solution of it.
+
+    Returns
+    -------
+    float
+        Greatest distance between the journals' orbits, of the clearance; infinite where the
+        further harmonics meet an undamped resonance or the estimate cannot be computed.
+    """
+    known = solution.harmonics
+    more = Harmonics(known.highest + _AHEAD, revolutions=known.revolutions)
+    try:
+        equations = balance.with_harmonics(more).at(solution.speed)
+        x = more.change_from(known, solution.coefficients).ravel()
+        residual, jacobian = equations.linearise(x)
+        step = np.linalg.solve(jacobian, residual)
+    except (ResonanceError, np.linalg.LinAlgError):
+        return float("inf")
+    error = equations.eccentricity(step)
+    return error if np.isfinite(error) else float("inf")
+
+
+def solve_accurately(
+    machine: Machine,
+    speed: float,
+    options: HarmonicsOptions | None = None,
+    start: AccurateSolution | None = None,
+) -> AccurateSolution:
+    """Solve at one speed with as many harmonics as the tolerance asks for.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine; it needs a damper.
+    speed : float
+        Rotor speed [rad/s], positive.
+    options : HarmonicsOptions, optional
+        Tolerance and limits.
+    start : AccurateSolution, optional
+        A converged solution of the same machine from which to begin; its harmonics are the fewest.
+
+    Returns
+    -------
+    AccurateSolution
+        The last one that converged, or the first where none did. Its error is above the tolerance
+        where the most harmonics are too few, or more of them lead to no solution.
+
+    Raises
+    ------
+    MachineError, ValueError
+        See `HarmonicBalance` and `solve`.
+    """
+    options = options or HarmonicsOptions()
+    first = start.balance if start else HarmonicBalance(machine, options.first())
+    solution = solve(first, speed, start.solution if start else None)
+    if not solution.converged:
+        return AccurateSolution(first, solution, float("nan"))
+    reached = AccurateSolution(first, solution, truncation_error(first, solution))
+    while reached.error > options.tolerance:
+        more = options.more(reached.balance.harmonics)
+        if more is None:
+            break
+        balance = first.with_harmonics(more)
+        solution = solve(balance, speed, reached.solution)
+        if not solution.converged:
+            break
+        reached = AccurateSolution(balance, solution, truncation_error(balance, solution))
+    return reached
