@@ -12,7 +12,7 @@ import os
 import time
 
 from benchmarks.scaling import PAPER
-from sfd_hbm_ros.hbm import Harmonics
+from sfd_hbm_ros.hbm.truncation import HarmonicsOptions
 from sfd_hbm_ros.study.design import Design
 from sfd_hbm_ros.study.distributions import Normal
 from sfd_hbm_ros.study.processes import on_processes
@@ -39,7 +39,8 @@ def main() -> int:
     given = parser.parse_args()
     design = Design({}, SCATTER, given.variants)
     limits = 3000.0 * RPM, 5000.0 * RPM
-    task = Task(PAPER, design.paths, *limits, Harmonics(given.harmonics))
+    k = given.harmonics
+    task = Task(PAPER, design.paths, *limits, HarmonicsOptions(fewest=k, most=k))
     variants = dict(enumerate(design.values.tolist()))
     task.outcome(variants[0])  # compiled code is loaded
     begin = time.perf_counter()

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterable
 from typing import Any
 
+from sfd_hbm_ros.hbm.truncation import HarmonicsOptions
 from sfd_hbm_ros.machine import Machine, MachineError, doubts, override_all, read_machine
 from sfd_hbm_ros.machine.document import parse
 from sfd_hbm_ros.units import RPM
@@ -41,7 +42,11 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 def add_harmonics(parser: argparse.ArgumentParser) -> None:
     """Add the number of harmonics."""
     parser.add_argument(
-        "--harmonics", type=_highest, default=7, metavar="K", help="highest harmonic (default 7)"
+        "--harmonics",
+        type=_highest,
+        metavar="K",
+        help="highest harmonic; by default as many, from 7 to 63, as keep the truncation error "
+        "below 1e-5 of the clearance",
     )
 
 
@@ -53,6 +58,21 @@ def _highest(text: str) -> int:
             "high, and the work grows with the third power of their number"
         )
     return int(text)
+
+
+def harmonics_options(highest: int | None, revolutions: int = 1) -> HarmonicsOptions:
+    """How many harmonics are taken: as many as are needed, or those that were asked for."""
+    if highest is None:
+        return HarmonicsOptions(revolutions=revolutions)
+    return HarmonicsOptions(fewest=highest, most=highest, revolutions=revolutions)
+
+
+def truncation_sentence(highest: int, error: float) -> str:
+    """What the harmonics that were left out would add; a cause for doubt is named."""
+    if not math.isfinite(error):
+        return f"{highest} harmonics; what more of them would add cannot be estimated"
+    more = ", so more of them are needed" if error > HarmonicsOptions().tolerance else ""
+    return f"{highest} harmonics; more would add {error:.0e} of the clearance{more}"
 
 
 def read_changed_machine(chosen: argparse.Namespace) -> Machine:

@@ -11,12 +11,13 @@ from sfd_hbm_ros.commands.arguments import (
     UsageError,
     add_harmonics,
     add_machine,
+    harmonics_options,
     print_json,
     read_changed_machine,
 )
 from sfd_hbm_ros.commands.files import check_outputs
 from sfd_hbm_ros.commands.progress import Progress, speed_bar
-from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
+from sfd_hbm_ros.hbm.truncation import solve_accurately
 from sfd_hbm_ros.report.transient_table import write_transient
 from sfd_hbm_ros.response.integration.observed import ObservedJump, observed_jumps
 from sfd_hbm_ros.response.integration.ramp import Ramp
@@ -52,7 +53,8 @@ def run(chosen: argparse.Namespace) -> None:
         raise UsageError(f"--to {chosen.end:g}: must differ from --from {chosen.start:g} rpm")
     check_outputs(chosen)
     _check_length(Ramp.between(start, end, rate), chosen.rate)
-    balance = HarmonicBalance(read_changed_machine(chosen), Harmonics(chosen.harmonics))
+    options = harmonics_options(chosen.harmonics)
+    balance = solve_accurately(read_changed_machine(chosen), start, options).balance
     started = time.perf_counter()
     with Progress(speed_bar(start, end)) as progress:
         transient = simulate(balance, start, end, rate, progress=progress)

@@ -8,11 +8,14 @@ import numpy as np
 from sfd_hbm_ros.commands.arguments import (
     add_harmonics,
     add_machine,
+    harmonics_options,
     print_json,
     read_changed_machine,
     speed_from,
+    truncation_sentence,
 )
-from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion, Solution, solve, stability
+from sfd_hbm_ros.hbm import JournalMotion, stability
+from sfd_hbm_ros.hbm.truncation import AccurateSolution, solve_accurately
 from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.units import RPM
 
@@ -27,25 +30,30 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> None:
     """Solve and print."""
     speed = speed_from(chosen.rpm)
-    balance = HarmonicBalance(read_changed_machine(chosen), Harmonics(chosen.harmonics))
-    solution = solve(balance, speed)
-    stable = stability(balance, solution).stable if solution.converged else None
+    found = solve_accurately(
+        read_changed_machine(chosen), speed, harmonics_options(chosen.harmonics)
+    )
+    solution = found.solution
+    stable = stability(found.balance, solution).stable if solution.converged else None
     if chosen.json:
-        print_json(_data(solution, stable))
+        print_json(_data(found, stable))
     if not solution.converged:
         raise NoSolutionError(f"no solution at {chosen.rpm:g} rpm: {solution.message}")
     if not chosen.json:
-        print(_text(solution, stable))
+        print(_text(found, stable))
 
 
-def _data(solution: Solution, stable: bool | None) -> dict[str, Any]:
+def _data(found: AccurateSolution, stable: bool | None) -> dict[str, Any]:
     """The contract's JSON object, coefficients in metres."""
+    solution = found.solution
     return {
         "speed_rpm": solution.speed / RPM,
         "converged": solution.converged,
         "residual": solution.residual,
         "iterations": solution.iterations,
         "stable": stable,
+        "harmonics": solution.harmonics.highest,
+        "truncation_error": found.error,
         "dampers": {name: _damper(motion) for name, motion in solution.journals.items()},
     }
 
@@ -63,11 +71,13 @@ def _damper(motion: JournalMotion) -> dict[str, Any]:
     }
 
 
-def _text(solution: Solution, stable: bool | None) -> str:
+def _text(found: AccurateSolution, stable: bool | None) -> str:
     """The same for people: amplitudes in micrometres, zero to peak."""
+    solution = found.solution
     lines = [
         f"{solution.speed / RPM:g} rpm: {'stable' if stable else 'unstable'} response, "
-        f"{solution.iterations} iterations, residual {solution.residual:.1e} of the load"
+        f"{solution.iterations} iterations, residual {solution.residual:.1e} of the load",
+        truncation_sentence(solution.harmonics.highest, found.error),
     ]
     for name, motion in solution.journals.items():
         lines += [

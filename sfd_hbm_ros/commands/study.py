@@ -13,6 +13,7 @@ from sfd_hbm_ros.commands.arguments import (
     UsageError,
     add_harmonics,
     add_machine,
+    harmonics_options,
     print_json,
     read_changed_machine,
     speed_from,
@@ -22,7 +23,6 @@ from sfd_hbm_ros.commands.progress import Progress, share_bar
 from sfd_hbm_ros.commands.ranges import range_from
 from sfd_hbm_ros.commands.study_report import data_of, text_of
 from sfd_hbm_ros.commands.variations import grid_from, scatter_from
-from sfd_hbm_ros.hbm import Harmonics
 from sfd_hbm_ros.machine import Machine, machine_to_dict
 from sfd_hbm_ros.report.study_table import study_writer
 from sfd_hbm_ros.response.errors import NoSolutionError
@@ -119,7 +119,9 @@ def _study(chosen: argparse.Namespace, machine: Machine) -> tuple[Design, Task]:
         chosen.seed or 0,
     )
     lowest, highest = map(speed_from, sorted(range_from("--rpm", chosen.rpm)))
-    return design, Task(machine, design.paths, lowest, highest, Harmonics(chosen.harmonics))
+    return design, Task(
+        machine, design.paths, lowest, highest, harmonics_options(chosen.harmonics)
+    )
 
 
 def _identity(chosen: argparse.Namespace, task: Task) -> dict[str, Any]:

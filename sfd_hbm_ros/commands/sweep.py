@@ -8,6 +8,7 @@ from sfd_hbm_ros.commands.arguments import (
     UsageError,
     add_harmonics,
     add_machine,
+    harmonics_options,
     print_json,
     read_changed_machine,
     speed_from,
@@ -16,8 +17,10 @@ from sfd_hbm_ros.commands.files import check_outputs
 from sfd_hbm_ros.commands.progress import Progress
 from sfd_hbm_ros.commands.ranges import range_from, varied_from
 from sfd_hbm_ros.commands.sweep_report import data_of, text_of
-from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.hbm.selection import SelectedBalance
+from sfd_hbm_ros.hbm.truncation import HarmonicsOptions
+from sfd_hbm_ros.machine import Machine
+from sfd_hbm_ros.response.curves.accuracy import balance_for_entry, balance_for_speeds
 from sfd_hbm_ros.response.curves.curve import (
     ResponseCurve,
     parameter_curve,
@@ -94,20 +97,20 @@ def _draw(summary: Summary, path: str) -> None:
 
 def _curve(chosen: argparse.Namespace) -> ResponseCurve:
     machine = read_changed_machine(chosen)
-    harmonics = Harmonics(chosen.harmonics, revolutions=chosen.revolutions)
+    options = harmonics_options(chosen.harmonics, chosen.revolutions)
     if chosen.vary is not None:
         for option in ("detached", "select"):
             if getattr(chosen, option):
                 raise UsageError(f"--{option}: is for a range of speeds, not for --vary")
-        return _over_parameter(chosen, HarmonicBalance(machine, harmonics))
+        return _over_parameter(chosen, machine, options)
     lowest, highest = sorted(range_from("--rpm", chosen.rpm))
     speeds = speed_from(lowest), speed_from(highest)
     with Progress(lambda n, speed: f"{n} points, {speed / RPM:.1f} rpm") as progress:
+        balance = balance_for_speeds(machine, *speeds, options, progress)
         if chosen.select is None:
-            balance = HarmonicBalance(machine, harmonics)
             curve = response_curve(balance, *speeds, progress=progress)
         else:
-            selected = SelectedBalance(machine, harmonics, chosen.select)
+            selected = SelectedBalance(machine, balance.harmonics, chosen.select)
             curve = selected_curve(selected, *speeds, progress=progress)
         if chosen.detached:
             found = detached_branches(curve, *speeds, progress=progress)
@@ -115,10 +118,13 @@ def _curve(chosen: argparse.Namespace) -> ResponseCurve:
         return curve
 
 
-def _over_parameter(chosen: argparse.Namespace, balance: HarmonicBalance) -> ResponseCurve:
-    path, start, end = varied_from(chosen.vary, balance.machine)
+def _over_parameter(
+    chosen: argparse.Namespace, machine: Machine, options: HarmonicsOptions
+) -> ResponseCurve:
+    path, start, end = varied_from(chosen.vary, machine)
     speed = speed_from(_number(chosen.rpm))
     with Progress(lambda n, value: f"{n} points, {path} = {value:.6g}") as progress:
+        balance = balance_for_entry(machine, speed, path, (start, end), options, progress)
         return parameter_curve(balance, speed, path, start, end, progress=progress)
 
 

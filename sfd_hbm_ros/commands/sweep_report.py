@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sfd_hbm_ros.commands.arguments import truncation_sentence
 from sfd_hbm_ros.hbm.points import Stop
+from sfd_hbm_ros.response.curves.accuracy import curve_error
 from sfd_hbm_ros.response.curves.judged import CurveBranch
 from sfd_hbm_ros.response.curves.summary import Mark, Summary
 from sfd_hbm_ros.units import RPM
@@ -47,6 +49,8 @@ def data_of(summary: Summary, path: str | None, seconds: float) -> dict[str, Any
         "ends": [branch.stop.value for branch in curve.branches],
         "quasi_periodic": [_reach(branch) for branch in curve.branches if not branch.periodic],
         "detached": [_reach(branch) for branch in curve.detached],
+        "harmonics": curve.balance.harmonics.highest,
+        "truncation_error": curve_error(curve),
         "seconds": seconds,
     }
 
@@ -67,7 +71,10 @@ def _reach(branch: CurveBranch) -> dict[str, list[float]]:
 
 def text_of(data: dict[str, Any]) -> str:
     """The same for people."""
-    lines = [f"{data['points']} points in {data['seconds']:.2f} s"]
+    lines = [
+        f"{data['points']} points in {data['seconds']:.2f} s",
+        truncation_sentence(data["harmonics"], data["truncation_error"]),
+    ]
     lines += [f"peak    {_place(data['peak'])}: eccentricity {data['peak']['eccentricity']:.4f}"]
     lines += [
         f"fold    {_place(fold)}: eccentricity {fold['eccentricity']:.4f}"

@@ -2,25 +2,30 @@
 
 A solution of K harmonics is put into the equations of K + 4. One step of Newton's method there is
 the difference between both solutions but for terms of second order (Deuflhard 2011, Newton Methods
-for Nonlinear Problems, sec. 2.1), and as the coefficients decay with the order, nearly the distance
-from the solution of all harmonics. Four orders hold two of every parity: the response of symmetric
-films has odd orders alone.
+for Nonlinear Problems, sec. 2.1), and as the coefficients decay with the order, nearly the
+distance from the solution of all harmonics. Four orders hold two of every parity: the response of
+symmetric films has odd orders alone.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.balance import HarmonicBalance
+from sfd_hbm_ros.hbm.family import MachineFamily
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.solution import Solution
 from sfd_hbm_ros.hbm.solve import solve
 from sfd_hbm_ros.machine import Machine
 from sfd_hbm_ros.rotor import ResonanceError
 
+Array = NDArray[np.float64]
+
 _AHEAD = 4  # orders beyond the highest, in which the step is taken
-_GROWTH = 1.5  # of the highest order, where the estimate is too great
+_CORRECTIONS = 6  # of Newton's method, from one group of harmonics to a larger one
+_GROWTH = 1.25  # of the highest order, where the estimate is too great
 
 
 @dataclass(frozen=True)
@@ -50,10 +55,12 @@ class HarmonicsOptions:
     def __post_init__(self) -> None:
         if not 0.0 < self.tolerance < 1.0:
             raise ValueError(f"tolerance: {self.tolerance} is not allowed, it must be in (0, 1)")
-        if not 1 <= self.fewest <= self.most:
+        if self.fewest < 1:
+            raise ValueError(f"harmonics: {self.fewest} is not allowed, it must be at least 1")
+        if self.most < self.fewest:
             raise ValueError(
-                f"harmonics: {self.fewest} and {self.most} are not allowed, the fewest must be at "
-                "least 1 and the most not less"
+                f"harmonics: {self.fewest} at least and {self.most} at most are not allowed, the "
+                "most must not be fewer"
             )
 
     def first(self) -> Harmonics:
@@ -61,7 +68,7 @@ class HarmonicsOptions:
         return Harmonics(self.fewest, revolutions=self.revolutions)
 
     def more(self, harmonics: Harmonics) -> Harmonics | None:
-        """Half as many again, up to the most; None where these are the most."""
+        """A quarter more, up to the most; None where these are the most."""
         if harmonics.highest >= self.most:
             return None
         highest = min(self.most, int(np.ceil(_GROWTH * harmonics.highest)))
@@ -103,15 +110,94 @@ def truncation_error(balance: HarmonicBalance, solution: Solution) -> float:
         further harmonics meet an undamped resonance or the estimate cannot be computed.
     """
     known = solution.harmonics
-    more = Harmonics(known.highest + _AHEAD, revolutions=known.revolutions)
+    more = _more(known)
     try:
         equations = balance.with_harmonics(more).at(solution.speed)
-        x = more.change_from(known, solution.coefficients).ravel()
-        residual, jacobian = equations.linearise(x)
-        step = np.linalg.solve(jacobian, residual)
+        residual, jacobian = equations.linearise(
+            more.change_from(known, solution.coefficients).ravel()
+        )
+        step: Array = np.linalg.solve(jacobian, residual).astype(float)
     except (ResonanceError, np.linalg.LinAlgError):
         return float("inf")
-    error = equations.eccentricity(step)
+    return _finite_or_infinite(equations.eccentricity(step))
+
+
+@dataclass(frozen=True, eq=False)
+class BranchPlace:
+    """A place on or near a branch of solutions.
+
+    Attributes
+    ----------
+    family : MachineFamily
+        The machine as the parameter varies, and the harmonics.
+    value : float
+        The parameter.
+    x : (rows n,) array
+        Coefficients [m].
+    scale : float
+        What a change of the parameter is compared to, in its unit.
+    """
+
+    family: MachineFamily
+    value: float
+    x: Array
+    scale: float
+
+    def truncation_error(self) -> float:
+        """Estimate how far the branch of all harmonics is from this place.
+
+        Near a fold a solution of all harmonics at the same value of the parameter may be far away,
+        or missing, though the branch passes close by. So the parameter takes part in Newton's
+        step, which is the shortest that there is.
+
+        Returns
+        -------
+        float
+            Of the clearance, or of the parameter's scale, whichever is greater; infinite where it
+            cannot be computed.
+        """
+        return self.with_harmonics(_more(self.family.balance.harmonics))._stepped()[1]
+
+    def with_harmonics(self, harmonics: Harmonics) -> "BranchPlace":
+        """The same place, described by other harmonics."""
+        balance = self.family.balance
+        known = balance.harmonics
+        x = harmonics.change_from(known, self.x.reshape(known.rows, -1)).ravel()
+        family = replace(self.family, balance=balance.with_harmonics(harmonics))
+        return replace(self, family=family, x=x)
+
+    def corrected(self, tolerance: float) -> "BranchPlace | None":
+        """The place of the branch nearest to it, to a tolerance; None where it leads to none."""
+        place = self
+        for _ in range(_CORRECTIONS):
+            place, moved = place._stepped()
+            if moved <= tolerance:
+                return place
+            if not moved < 1.0:
+                return None
+        return None
+
+    def _stepped(self) -> "tuple[BranchPlace, float]":
+        """The place after the shortest of Newton's steps, and how far it lies."""
+        try:
+            equations = self.family.at(self.value)
+            residual, jacobian = equations.linearise(self.x)
+            slope = self.family.slope(equations, self.value, self.x) * self.scale
+            matrix = np.column_stack([jacobian * equations.scale, slope])
+            step: Array = np.linalg.lstsq(matrix, residual, rcond=None)[0].astype(float)
+        except (ResonanceError, np.linalg.LinAlgError):
+            return self, float("inf")
+        x, value = step[:-1] * equations.scale, float(step[-1])
+        moved = _finite_or_infinite(max(equations.eccentricity(x), abs(value)))
+        place = replace(self, value=self.value - value * self.scale, x=self.x - x)
+        return place, moved
+
+
+def _more(harmonics: Harmonics) -> Harmonics:
+    return Harmonics(harmonics.highest + _AHEAD, revolutions=harmonics.revolutions)
+
+
+def _finite_or_infinite(error: float) -> float:
     return error if np.isfinite(error) else float("inf")
 
 

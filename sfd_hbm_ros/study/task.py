@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.hbm.points import Stop
+from sfd_hbm_ros.hbm.truncation import HarmonicsOptions
 from sfd_hbm_ros.machine import Machine, override_all
+from sfd_hbm_ros.response.curves.accuracy import balance_for_speeds
 from sfd_hbm_ros.response.curves.curve import ResponseCurve, response_curve
 from sfd_hbm_ros.response.curves.jumps import Direction
 from sfd_hbm_ros.response.curves.summary import Summary
@@ -54,15 +55,15 @@ class Task:
         Dotted paths of the entries that vary.
     lowest, highest : float
         Range of the speed [rad/s].
-    harmonics : Harmonics
-        The harmonics.
+    harmonics : HarmonicsOptions
+        How many harmonics are taken, of each variant as many as it needs.
     """
 
     machine: Machine
     paths: tuple[str, ...]
     lowest: float
     highest: float
-    harmonics: Harmonics
+    harmonics: HarmonicsOptions
 
     def outcome(self, values: Sequence[float]) -> Outcome:
         """Compute the variant that has these values of the entries; nothing is raised."""
@@ -77,8 +78,8 @@ class Task:
 
     def _curve(self, values: Sequence[float]) -> ResponseCurve:
         variant = override_all(self.machine, dict(zip(self.paths, values, strict=True)))
-        balance = HarmonicBalance(variant, self.harmonics)
-        return response_curve(balance, self.lowest, self.highest)
+        speeds = self.lowest, self.highest
+        return response_curve(balance_for_speeds(variant, *speeds, self.harmonics), *speeds)
 
 
 def _read_off(summary: Summary, started: float) -> Outcome:

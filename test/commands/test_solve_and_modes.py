@@ -35,10 +35,14 @@ def test_solve_prints_what_the_library_computes():
         "residual",
         "iterations",
         "stable",
+        "harmonics",
+        "truncation_error",
         "dampers",
     ]
     assert printed["speed_rpm"] == pytest.approx(3900.0, rel=1e-15)
     assert printed["converged"] is True
+    assert printed["harmonics"] == 5
+    assert 1e-6 < printed["truncation_error"] < 1e-5
     assert printed["stable"] is True
     damper = printed["dampers"]["damper_1"]
     assert damper["orders"] == [0, 1, 2, 3, 4, 5]
@@ -47,6 +51,19 @@ def test_solve_prints_what_the_library_computes():
     rows = [damper[key] for key in ("x_cos", "y_cos", "x_sin", "y_sin")]
     expected = [*motion.cos.T, *motion.sin.T]
     assert np.allclose(rows, expected, rtol=1e-7, atol=1e-14)
+
+
+def test_solve_takes_the_harmonics_that_it_needs_and_says_what_they_leave_out():
+    soft = ("--set", "gravity=true", "--set", "dampers.damper_1.centering_stiffness=2.627e5")
+    chosen = run("solve", PAPER, "--rpm", "2000", *soft, "--json")
+    fixed = run("solve", PAPER, "--rpm", "2000", *soft, "--harmonics", "7", "--json")
+    printed, seven = json.loads(chosen.stdout), json.loads(fixed.stdout)
+    assert seven["harmonics"] == 7 < printed["harmonics"]
+    assert printed["truncation_error"] <= 1e-5 < seven["truncation_error"]
+    orders = printed["dampers"]["damper_1"]["orders"]
+    assert orders == list(range(printed["harmonics"] + 1))
+    told = run("solve", PAPER, "--rpm", "2000", *soft, "--harmonics", "7").stdout
+    assert "7 harmonics; more would add 2e-05 of the clearance, so more of them are needed" in told
 
 
 def test_solve_for_people_is_a_table():
