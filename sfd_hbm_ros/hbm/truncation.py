@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm.balance import HarmonicBalance
 from sfd_hbm_ros.hbm.family import MachineFamily
-from sfd_hbm_ros.hbm.harmonics import Harmonics
+from sfd_hbm_ros.hbm.harmonics import MAX_MULTIPLES, Harmonics
+from sfd_hbm_ros.hbm.options import OptionError
 from sfd_hbm_ros.hbm.solution import Solution
 from sfd_hbm_ros.hbm.solve import solve
 from sfd_hbm_ros.machine import Machine
@@ -43,7 +44,7 @@ class HarmonicsOptions:
 
     Raises
     ------
-    ValueError
+    OptionError
         If a setting is out of its range.
     """
 
@@ -54,11 +55,11 @@ class HarmonicsOptions:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.tolerance < 1.0:
-            raise ValueError(f"tolerance: {self.tolerance} is not allowed, it must be in (0, 1)")
+            raise OptionError(f"tolerance: {self.tolerance} is not allowed, it must be in (0, 1)")
         if self.fewest < 1:
-            raise ValueError(f"harmonics: {self.fewest} is not allowed, it must be at least 1")
+            raise OptionError(f"harmonics: {self.fewest} is not allowed, it must be at least 1")
         if self.most < self.fewest:
-            raise ValueError(
+            raise OptionError(
                 f"harmonics: {self.fewest} at least and {self.most} at most are not allowed, the "
                 "most must not be fewer"
             )
@@ -194,7 +195,8 @@ class BranchPlace:
 
 
 def _more(harmonics: Harmonics) -> Harmonics:
-    return Harmonics(harmonics.highest + _AHEAD, revolutions=harmonics.revolutions)
+    highest = min(harmonics.highest + _AHEAD, MAX_MULTIPLES // harmonics.revolutions)
+    return Harmonics(highest, revolutions=harmonics.revolutions)
 
 
 def _finite_or_infinite(error: float) -> float:
