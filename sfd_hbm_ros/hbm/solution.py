@@ -19,6 +19,44 @@ ComplexArray = NDArray[np.complex128]
 _ORBIT_POINTS = 512
 
 
+def greatest_distance(harmonics: Harmonics, coefficients: Array) -> float:
+    """Greatest distance of an orbit from the origin [m].
+
+    Parameters
+    ----------
+    harmonics : Harmonics
+        Harmonics of the coefficients.
+    coefficients : (rows, 2) array
+        Mean, then cosine and sine of each order, of x and y [m].
+    """
+    squares = np.square(harmonics.fine_basis @ coefficients).sum(axis=1)
+    best = int(np.argmax(squares))
+    spacing = 2.0 * np.pi * harmonics.revolutions / len(squares)
+    orders, amplitudes = harmonics.orders, harmonics.amplitudes(coefficients)
+    w = 1j * orders
+    rates = np.stack([amplitudes, w[:, None] * amplitudes, (w * w)[:, None] * amplitudes], 1)
+    angle, farthest = best * spacing, float(squares[best])
+    for _ in range(4):  # Newton's method on the derivative of the squared distance
+        turned = np.exp(w * angle) @ rates.reshape(len(orders), -1)
+        x, y, x1, y1, x2, y2 = turned.real.tolist()
+        farthest = max(farthest, x * x + y * y)
+        bend = x1 * x1 + y1 * y1 + x * x2 + y * y2
+        if bend >= 0.0:  # a circle about the centre has no maximum to refine
+            break
+        move = min(max((x * x1 + y * y1) / bend, -spacing), spacing)
+        angle -= move
+        if abs(move) < 1e-6 * spacing:  # below the rounding of the maximum
+            break
+    return math.sqrt(farthest)
+
+
+def greatest_vibration(harmonics: Harmonics, coefficients: Array) -> float:
+    """Greatest distance of an orbit from its own mean [m]; parameters as `greatest_distance`."""
+    about_mean = coefficients.copy()
+    about_mean[0] = 0.0
+    return greatest_distance(harmonics, about_mean)
+
+
 @dataclass(frozen=True, eq=False)
 class JournalMotion:
     """Periodic motion of one damper's journal.
@@ -67,25 +105,12 @@ class JournalMotion:
     @cached_property
     def eccentricity_max(self) -> float:
         """Greatest eccentricity sqrt(x^2 + y^2)/c of the orbit (Eq. 15)."""
-        squares = np.square(self._samples).sum(axis=1)
-        best = int(np.argmax(squares))
-        spacing = 2.0 * np.pi * self.harmonics.revolutions / len(squares)
-        orders, amplitudes = self.harmonics.orders, self.harmonics.amplitudes(self.coefficients)
-        w = 1j * orders
-        rates = np.stack([amplitudes, w[:, None] * amplitudes, (w * w)[:, None] * amplitudes], 1)
-        angle, farthest = best * spacing, float(squares[best])
-        for _ in range(4):  # Newton's method on the derivative of the squared distance
-            turned = np.exp(w * angle) @ rates.reshape(len(orders), -1)
-            x, y, x1, y1, x2, y2 = turned.real.tolist()
-            farthest = max(farthest, x * x + y * y)
-            bend = x1 * x1 + y1 * y1 + x * x2 + y * y2
-            if bend >= 0.0:  # a circle about the centre has no maximum to refine
-                break
-            move = min(max((x * x1 + y * y1) / bend, -spacing), spacing)
-            angle -= move
-            if abs(move) < 1e-6 * spacing:  # below the rounding of the maximum
-                break
-        return math.sqrt(farthest) / self.clearance
+        return greatest_distance(self.harmonics, self.coefficients) / self.clearance
+
+    @cached_property
+    def vibration(self) -> float:
+        """Greatest distance of the orbit from its own mean [m], zero to peak."""
+        return greatest_vibration(self.harmonics, self.coefficients)
 
     @cached_property
     def eccentricity_mean(self) -> float:

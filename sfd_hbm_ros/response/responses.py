@@ -16,9 +16,11 @@ from sfd_hbm_ros.hbm.quasi_periodic_response import (
     quasi_periodic_stability,
     standing_response,
 )
+from sfd_hbm_ros.hbm.solution import greatest_distance
 from sfd_hbm_ros.hbm.solve import solution_at
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 Response: TypeAlias = Solution | QuasiPeriodicResponse
 
@@ -49,6 +51,85 @@ def stability_of(balance: HarmonicBalance, response: Response) -> Stability:
     if isinstance(response, QuasiPeriodicResponse):
         return quasi_periodic_stability(balance, response)
     return stability(balance, response)
+
+
+def with_unknowns(response: Response, speed: float | None, x: Array) -> Response:
+    """A response of the same kind with other unknowns (n,), at another speed where one is given.
+
+    Nothing is solved: unknowns that do not balance the forces make a motion, too.
+    """
+    rows = response.harmonics.rows
+    columns = np.hsplit(
+        x[: 2 * rows * len(response.journals)].reshape(rows, -1), len(response.journals)
+    )
+    journals = {
+        name: replace(motion, coefficients=column)
+        for (name, motion), column in zip(response.journals.items(), columns, strict=True)
+    }
+    speed = response.speed if speed is None else speed
+    if isinstance(response, QuasiPeriodicResponse):
+        return replace(response, speed=speed, frequency=float(x[-1]), journals=journals)
+    return replace(response, speed=speed, journals=journals)
+
+
+def vibration(response: Response, damper: str) -> float:
+    """Greatest distance of a damper's journal from its mean position [m], zero to peak.
+
+    A quasi-periodic response has its mean at the centre, and is known in the turning frame.
+    """
+    motion = response.journals[damper]
+    if isinstance(response, QuasiPeriodicResponse):
+        return motion.eccentricity_max * motion.clearance
+    return motion.vibration
+
+
+def disk_vibrations(balance: HarmonicBalance, response: Response) -> dict[str, float]:
+    """Greatest distance of every disk's centre from its mean position [m], zero to peak.
+
+    Parameters
+    ----------
+    balance : HarmonicBalance
+        The machine whose response it is.
+    response : Solution or QuasiPeriodicResponse
+        The response.
+
+    Raises
+    ------
+    ResonanceError
+        If a frequency meets an undamped resonance of the shaft with its journals held.
+    """
+    disks = [disk.name for disk in balance.machine.disks]
+    harmonics = response.harmonics
+    if isinstance(response, Solution):
+        amplitudes = balance.response(response)
+        amplitudes[0] = 0.0
+        return {
+            name: greatest_distance(
+                harmonics, harmonics.coefficients(amplitudes[:, balance.model.stations[name]])
+            )
+            for name in disks
+        }
+    whirls = _turning_orbits(balance, response)
+    return {
+        name: float(np.abs(whirls[:, balance.model.stations[name][0]]).max()) for name in disks
+    }
+
+
+def _turning_orbits(balance: HarmonicBalance, response: QuasiPeriodicResponse) -> ComplexArray:
+    """Motion x + i y in the turning frame over a period of it, (points, N) by x coordinates.
+
+    Every whirl Z exp(i W t) is x = Re(Z exp(i W t)), y = Re(-i Z exp(i W t)).
+    """
+    highest = response.harmonics.highest
+    multiples = np.arange(-highest, highest + 1)
+    orders = 1.0 + multiples * response.frequency_ratio
+    journals = np.hstack(
+        [np.outer(response.whirl(name), [1.0, -1.0j]) for name in response.journals]
+    )
+    amplitudes = balance.condensation.at(response.speed, orders).recover(journals)
+    angles = response.harmonics.angles(len(response.harmonics.fine_basis))
+    turning: ComplexArray = np.exp(1j * np.multiply.outer(angles, multiples)) @ amplitudes
+    return turning
 
 
 def distance(one: Response, other: Response) -> float:

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
-import numpy as np
 from scipy.optimize import minimize_scalar
 
 from sfd_hbm_ros.hbm import JournalMotion, Solution, solve
@@ -28,8 +27,7 @@ def eccentricity(solution: Solution) -> float:
 def vibration(solution: Solution) -> float:
     """Greatest distance of the orbit from its own mean, of the clearance."""
     motion = journal(solution)
-    distance = np.linalg.norm(motion.orbit() - motion.cos[0], axis=1)
-    return float(distance.max()) / motion.clearance
+    return motion.vibration / motion.clearance
 
 
 def journal(solution: Solution) -> JournalMotion:

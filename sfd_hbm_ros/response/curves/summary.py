@@ -9,14 +9,30 @@ from sfd_hbm_ros.hbm import Instability
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.journey import Leg, legs
 from sfd_hbm_ros.response.curves.jumps import Direction, Jump, jumps, leaps
+from sfd_hbm_ros.response.curves.peaks import Peak, damper_peaks
+from sfd_hbm_ros.response.responses import Response, vibration
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A point of a curve: the parameter and the greatest eccentricity of any damper there."""
+    """A point of a curve and the eccentricity of a damper there.
+
+    Attributes
+    ----------
+    value : float
+        The parameter: for a speed [rad/s].
+    eccentricity : float
+        Greatest eccentricity of the damper, or of any if none is named.
+    damper : str
+        Its name.
+    vibration : float
+        Its vibration, zero to peak, of the clearance.
+    """
 
     value: float
     eccentricity: float
+    damper: str = ""
+    vibration: float = np.nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,17 +71,41 @@ class Summary:
         ]
 
     @cached_property
+    def peaks(self) -> list[Peak]:
+        """Peaks of the vibration of every damper's journal, in rising order of the parameter."""
+        return damper_peaks(self.curve)
+
+    @cached_property
+    def highest_peak(self) -> Peak | None:
+        """The peak of the greatest vibration of any damper's journal, of its clearance."""
+        return max(self.peaks, key=_of_clearance, default=None)
+
+    @cached_property
     def peak(self) -> Mark:
-        """The stable response of the greatest eccentricity."""
-        marks = [
-            Mark(float(value), float(eccentricity))
+        """Where the vibration of any damper's journal is greatest, of its clearance.
+
+        That is the highest peak, or the last response before a jump that lets the vibration fall
+        where that is greater. Where there is neither it is the greatest stable vibration at all,
+        at an end of the range, and NaN where no response is stable. The eccentricity is that of
+        the same damper.
+        """
+        marks = [self._marked(peak.response, peak.value, peak.of) for peak in self.peaks]
+        marks += [
+            self._marked(jump.before, jump.value, name)
+            for jump in self.jumps
+            for name in self.curve.dampers
+            if vibration(jump.before, name) > vibration(jump.after, name)
+        ]
+        marks = marks or [
+            self._marked(response, value, name)
             for branch in self.curve.branches
-            for value, eccentricity, stable in zip(
-                branch.values, branch.worst_eccentricity, branch.stable, strict=True
+            for value, response, stable in zip(
+                branch.values.tolist(), branch.solutions, branch.stable, strict=True
             )
+            for name in self.curve.dampers
             if stable
         ]
-        return max(marks, key=lambda mark: mark.eccentricity, default=Mark(np.nan, np.nan))
+        return max(marks, key=lambda mark: mark.vibration, default=Mark(np.nan, np.nan))
 
     @cached_property
     def hysteresis(self) -> float | None:
@@ -90,23 +130,16 @@ class Summary:
         following = next(legs(self.curve, before.landing, direction.end))
         return following.end.is_at(leap.end)
 
-    @cached_property
+    @property
     def amplification_factor(self) -> float | None:
-        """Peak speed over the width at 1/sqrt(2) of the peak (API 684).
+        """That of the highest peak; None where there is none or its width is undefined."""
+        return self.highest_peak.amplification_factor if self.highest_peak else None
 
-        None where a fold or an end of the range leaves that width undefined.
-        """
-        if len(self.curve.branches) > 1 or self.folds:
-            return None
-        [branch] = self.curve.branches
-        x, y = branch.values, branch.worst_eccentricity
-        top = int(np.argmax(y))
-        below = np.flatnonzero(y < y[top] / np.sqrt(2.0))
-        left, right = below[below < top], below[below > top]
-        if not (left.size and right.size):
-            return None
-        sides = [
-            float(np.interp(y[top] / np.sqrt(2.0), [y[a], y[b]], [x[a], x[b]]))
-            for a, b in ((left[-1], left[-1] + 1), (right[0], right[0] - 1))
-        ]
-        return float(x[top] / abs(sides[1] - sides[0]))
+    def _marked(self, response: Response, value: float, damper: str) -> Mark:
+        motion = response.journals[damper]
+        part = vibration(response, damper) / motion.clearance
+        return Mark(value, motion.eccentricity_max, damper, part)
+
+
+def _of_clearance(peak: Peak) -> float:
+    return peak.vibration / peak.response.journals[peak.of].clearance

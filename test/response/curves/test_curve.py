@@ -94,7 +94,8 @@ def test_no_jump_without_a_fold():
     summary = Summary(curve)
     assert summary.folds == []
     assert summary.hysteresis is None
-    assert summary.peak.eccentricity == pytest.approx(curve.branches[0].worst_eccentricity.max())
+    highest = curve.branches[0].worst_eccentricity.max()  # of the points beside the peak
+    assert highest < summary.peak.eccentricity < 1.001 * highest
 
 
 def test_amplification_factor_is_that_of_the_curve_sampled_evenly():
