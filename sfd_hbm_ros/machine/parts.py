@@ -7,7 +7,7 @@ from dataclasses import MISSING, dataclass, fields
 from typing import Any, ClassVar, TypeVar, get_type_hints
 
 from sfd_hbm_ros.machine.errors import MachineError, dotted, show, show_key, unknown
-from sfd_hbm_ros.machine.rules import REQUIRED, Rule
+from sfd_hbm_ros.machine.rules import REQUIRED, MeaninglessError, Rule
 
 P = TypeVar("P", bound="Part")
 
@@ -39,6 +39,8 @@ class Part:
             value = getattr(self, key)
             try:
                 converted = rule.convert(value)
+            except MeaninglessError as error:
+                raise self.error(key, f"{error}, not {show(value)}") from None
             except (ValueError, TypeError, OverflowError):
                 allowed = f"must be {rule.allowed}"
                 raise self.error(key, f"{allowed}, not {show(value)}", allowed) from None

@@ -17,6 +17,9 @@ from typing import Any
 from sfd_hbm_ros.machine.errors import NUMBER
 
 REQUIRED = object()
+BEYOND = 1e6
+"""Multiple of the greatest size that machines have from which on a number means nothing."""
+
 OTHER_UNITS = {
     "m": {"mm": 1e-3, "um": 1e-6},
     "kg": {"g": 1e-3},
@@ -32,6 +35,10 @@ OTHER_UNITS = {
 """Units that data sheets and drawings have, in SI: what may have been meant by an odd number."""
 
 NAME = re.compile(r"(?=.{1,64}$)[\w-]+( [\w-]+)*")
+
+
+class MeaninglessError(ValueError):
+    """A number that can mean nothing; the sentence is what it must be."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +88,8 @@ def number(
     """Return the rule of a real number with above < number < below and number >= least.
 
     A size outside of `usual`, from the least to the greatest that machines have, is allowed and
-    doubted: most likely it is in another unit. Zero means that there is no such thing.
+    doubted: most likely it is in another unit. Zero means that there is no such thing. A size
+    greater than that by `BEYOND`, which no unit explains, is refused.
     """
     limits = {"above": above, "of at least": least, "below": below}
     allowed = f"a finite number [{unit}]" if unit else "a finite number"
@@ -92,6 +100,10 @@ def number(
         # NaN and the infinities lie in no open interval, not even the unlimited one.
         if not (above < x < below and x >= least):
             raise ValueError
+        most = BEYOND * usual[1] if usual else math.inf
+        if abs(x) > most:
+            limit = f"at most {most:g}" if x > 0.0 else f"at least {-most:g}"
+            raise MeaninglessError(f"must be {limit} [{unit}], a million times what is usual")
         return x
 
     def doubt(x: float) -> str:

@@ -6,12 +6,14 @@ from typing import Any
 
 from sfd_hbm_ros.machine.rules import Rule, number
 
+_GREATEST = {"N": 1e7, "N/m": 1e13}  # of a force and a coefficient; N s/m are none greater
+
 Matrix2 = tuple[tuple[float, float], tuple[float, float]]
 
 
 def pair(about: str, unit: str) -> Rule:
     """Return the rule of a vector (x, y)."""
-    component = number("", unit)
+    component = number("", unit, usual=(0.0, _GREATEST[unit]))
 
     def convert(value: Any) -> tuple[float, float]:
         x, y = _sequence(value)
@@ -25,7 +27,7 @@ def matrix(about: str, direct: Rule) -> Rule:
 
     A scalar k stands for ((k, 0), (0, k)).
     """
-    cross = number("")
+    cross = number("", "N/m or N s/m", usual=(0.0, _GREATEST["N/m"]))
 
     def convert(value: Any) -> Matrix2:
         if not isinstance(value, (list, tuple)):

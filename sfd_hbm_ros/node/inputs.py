@@ -6,16 +6,72 @@ import math
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
+from sfd_hbm_ros.machine import Machine
+
 T = TypeVar("T")
 
 FUTURE = 100_000_000
 """How far [ns] a stamp may lie ahead of the node's clock: clocks of two computers differ."""
+
+RIM_SPEED = 2000.0
+"""Speed of a rim [m/s] that no material withstands: its stress is the density times the square."""
+
+BEYOND = 10.0
+"""Multiple of the highest speed of the response curve up to which a speed is taken in any case."""
 
 _NANO = 1e-9
 
 
 class InputError(ValueError):
     """An input that cannot be used, in one sentence."""
+
+
+@dataclass(frozen=True)
+class Rim:
+    """What of a rotor moves fastest.
+
+    Attributes
+    ----------
+    name : str
+        What it is of.
+    radius : float
+        Its radius [m]; a disk's is that of a solid one with its mass and inertia.
+    """
+
+    name: str
+    radius: float
+
+    @classmethod
+    def of(cls, machine: Machine) -> Rim:
+        """The rim of a machine."""
+        shaft = (cls("the shaft", 0.5 * segment.outer_diameter) for segment in machine.shaft)
+        disks = (
+            cls(disk.name, math.sqrt(2.0 * disk.polar_inertia / disk.mass))
+            for disk in machine.disks
+        )
+        return max((*shaft, *disks), key=lambda rim: rim.radius)
+
+    def check(self, speed: float, highest: float) -> None:
+        """Refuse a rotor speed that the machine cannot have.
+
+        Parameters
+        ----------
+        speed : float
+            The speed [rad/s].
+        highest : float
+            Highest speed of the response curve [rad/s].
+
+        Raises
+        ------
+        InputError
+            If the rim would reach `RIM_SPEED`, and the speed is `BEYOND` times the highest.
+        """
+        rim, limit = self.radius * speed, max(RIM_SPEED / self.radius, BEYOND * highest)
+        if speed > limit:
+            raise InputError(
+                f"a speed must be below {limit:.3g} rad/s for this machine, not {speed:.6g}: the "
+                f"rim of {self.name} would move at {rim:.3g} m/s"
+            )
 
 
 @dataclass

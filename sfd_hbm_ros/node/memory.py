@@ -13,6 +13,7 @@ from rclpy.lifecycle import LifecycleNode
 
 from sfd_hbm_ros.machine.safe_file import put_aside, reason
 from sfd_hbm_ros.node.diagnostics import Status
+from sfd_hbm_ros.node.inputs import InputError
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.prediction import Model, Prediction
@@ -105,6 +106,10 @@ class Memory:
 
     def _restore(self, model: Model, state: State) -> None:
         """Go on from a state."""
+        try:
+            model.rim.check(state.speed, self._parameters["speed.max"])
+        except InputError as error:
+            raise StateFileError(f"{self._path}: refused: {error}") from None
         watch = self._watch
         watch.alarm = JumpAlarm.from_dict(watch.alarm.settings, state.alarm, time.monotonic())
         for load in [model.checked_load(*given) for given in state.loads.items()]:
@@ -135,7 +140,7 @@ class Memory:
         """Remember a prediction, and save it if it is time."""
         model = self._operation.model
         tracked = prediction.tracked
-        if not self._path or model is None or tracked is None or tracked.doubtful:
+        if not self._path or model is None or tracked is None or not tracked.verified:
             return
         solution = tracked.solution
         self._state = State(

@@ -153,6 +153,8 @@ class Operation:
             return
         with dropping(self._node, self.speed):
             speed = messages.read_speed(message)
+            if self.model is not None:
+                self.model.rim.check(speed, self._parameters["speed.max"])
             stamp = messages.read_stamp(message.header)
             stamp = self.speed.accept(speed, stamp, self._clock(), time.monotonic())
             self._estimator.add(stamp, speed)

@@ -11,6 +11,7 @@ import numpy as np
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion
 from sfd_hbm_ros.machine import Load, Machine
+from sfd_hbm_ros.node.inputs import Rim
 from sfd_hbm_ros.response.tracking.tracked import Tracked
 from sfd_hbm_ros.response.tracking.tracker import Tracker
 
@@ -78,10 +79,13 @@ class Model:
         The harmonics to balance.
     tracker : Tracker
         Follows the operating point.
+    rim : Rim
+        What moves fastest, which no value that can be changed alters.
     """
 
     def __init__(self, machine: Machine, highest: int) -> None:
         self.machine = machine
+        self.rim = Rim.of(machine)
         self.harmonics = Harmonics(highest)
         self._loads: dict[str, Load] = {}
         self._balance: HarmonicBalance | None = None

@@ -78,6 +78,16 @@ OUT_OF_RANGE = [
     ("unbalance.disk_2.magnitude", -4.319e-4),
 ]
 
+MEANINGLESS = [
+    ("dampers.damper_1.viscosity", 1e300, "at most 2e+06 [Pa s]"),
+    ("dampers.damper_1.centering_stiffness", 1e300, "at most 1e+18 [N/m]"),
+    ("unbalance.disk_2.magnitude", 2e7, "at most 1e+07 [kg m]"),
+    ("unbalance.disk_2.phase", -1e300, "at least -6.3e+06 [rad]"),
+    ("loads", [{"station": "disk_3", "force": [0, -1e300]}], "at least -1e+13 [N]"),
+    ("bearings.bearing_1.stiffness", 1e300, "at most 1e+19 [N/m]"),
+    ("bearings.bearing_1.damping", [[0, 1e300], [0, 0]], "at most 1e+19 [N/m or N s/m]"),
+]
+
 ALLOWED = [
     ("shaft.0.inner_diameter", 0, 0.0),
     ("disks.disk_1.polar_inertia", 0, 0.0),
@@ -86,7 +96,7 @@ ALLOWED = [
     ("dampers.damper_1.centering_stiffness", 0, 0.0),
     ("dampers.damper_1.density", 0, 0.0),
     ("unbalance.disk_2.magnitude", 0, 0.0),
-    ("unbalance.disk_2.phase", -1e300, -1e300),
+    ("unbalance.disk_2.phase", -6e6, -6e6),
     ("materials.steel.poisson_ratio", 0.49999999999999994, 0.49999999999999994),
     ("materials.steel.poisson_ratio", -0.9999999999999999, -0.9999999999999999),
     ("disks.disk_1.mass", 5e-324, 5e-324),
@@ -145,3 +155,13 @@ def test_what_is_allowed_is_read_exactly(
     number = get(machine_from_dict(changed(paper_data, path, value)), path)
     assert number == read
     assert type(number) is type(read)
+
+
+@pytest.mark.parametrize(("path", "value", "limit"), MEANINGLESS)
+def test_what_no_unit_explains_is_refused(
+    paper_data: dict[str, Any], path: str, value: object, limit: str
+) -> None:
+    sentence = refusal(changed(paper_data, path, value))
+    key, _, problem = sentence.partition(" ")
+    assert key == (path if path != "loads" else "loads.disk_3.force")
+    assert problem.startswith(f"must be {limit}, a million times what is usual, not ")

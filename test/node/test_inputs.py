@@ -4,7 +4,10 @@ import math
 
 import pytest
 
-from sfd_hbm_ros.node.inputs import FUTURE, Feed, InputError, Order, Pending
+from sfd_hbm_ros.machine import override, read_machine
+from sfd_hbm_ros.node.inputs import FUTURE, Feed, InputError, Order, Pending, Rim
+
+from .process import PAPER_ROTOR
 
 SECOND = 10**9
 
@@ -87,3 +90,22 @@ def test_the_newest_request_is_granted_when_it_is_due():
     assert pending.take(now=10.5) is None
     pending.rate = 1.0
     assert pending.wait(now=10.5) == pytest.approx(0.75)
+
+
+def test_a_speed_that_no_rotor_withstands_is_refused_with_the_rim_speed():
+    paper = read_machine(PAPER_ROTOR)
+    rim = Rim.of(paper)
+    disk = next(disk for disk in paper.disks if disk.name == rim.name)
+    assert disk.mass * rim.radius**2 / 2.0 == pytest.approx(disk.polar_inertia)
+    fastest = 2000.0 / rim.radius
+    rim.check(0.999 * fastest, 1000.0)
+    with pytest.raises(InputError) as refused:
+        rim.check(1e6, 1000.0)
+    said = str(refused.value)
+    assert said == (
+        f"a speed must be below {fastest:.3g} rad/s for this machine, not 1e+06: the rim of "
+        f"{rim.name} would move at {1e6 * rim.radius:.3g} m/s"
+    )
+    rim.check(9.9e5, 1e5)  # as the operator's range says more than the parts' inertia
+    thick = override(paper, "shaft.0.outer_diameter", 0.4)
+    assert Rim.of(thick) == Rim("the shaft", 0.2)

@@ -106,6 +106,11 @@ def foreign(path: Path) -> None:
     save_state(path, replace(MACHINE, name="another"), state)
 
 
+def impossible(path: Path) -> None:
+    """Write what older versions believed of a speed that the machine cannot have."""
+    save_state(path, MACHINE, State(1e6, Harmonics(1), np.full((3, 2), 1e-14), True, 0, {}))
+
+
 def torn(part: float):
     """Leave a part of a file."""
     return lambda path: os.truncate(path, int(part * path.stat().st_size))
@@ -124,8 +129,9 @@ def torn(part: float):
         ),
         (lambda path: path.write_bytes(b"\xff" + os.urandom(5000)), "not UTF-8 text"),
         (foreign, "foreign, the state of another machine"),
+        (impossible, "a speed must be below"),
     ],
-    ids=["empty", "begun", "half", "almost whole", "newer", "random", "foreign"],
+    ids=["empty", "begun", "half", "almost whole", "newer", "random", "foreign", "impossible"],
 )
 def test_a_file_of_no_use_is_reported_and_put_aside(predictor, spoil, reason):
     assert predictor.remote.change_state("deactivate", "cleanup") == [True, True]

@@ -104,7 +104,8 @@ def follow(way: Way, x: Array, orientation: float | None = None) -> Followed:
             before, here = here, _Step(part, solution.unknowns, reached)
         elif stride < _SHORTEST:
             break
-        stride *= float(np.clip(_SAFE * NEAR / moved, *(_GROWTH if solution else _CUT)))
+        room = _SAFE * NEAR / moved if moved else np.inf  # where nothing moves, as at no load
+        stride *= float(np.clip(room, *(_GROWTH if solution else _CUT)))
     return _by_arclength(way, here)
 
 

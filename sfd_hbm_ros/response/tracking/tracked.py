@@ -66,6 +66,12 @@ class Tracked:
     doubtful: bool = False
     wrong_before: bool = False
 
+    @property
+    def verified(self) -> bool:
+        """Whether the machine can be there, for all that is known, and the speed is believed."""
+        untenable = self.stable is False and self.place is None
+        return self.solution.converged and not (self.doubtful or untenable)
+
 
 def branch_name(solution: Solution, others: Sequence[Place]) -> BranchName:
     """Name of a response beside the other stable ones at its speed."""

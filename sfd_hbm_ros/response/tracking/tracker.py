@@ -26,6 +26,8 @@ from sfd_hbm_ros.response.tracking.pursuit import pursued, travelled
 from sfd_hbm_ros.response.tracking.tracked import BranchName, Tracked, branch_name, no_solution
 from sfd_hbm_ros.rotor import ResonanceError
 
+_STUCK = 2  # searches broken off in a row, after which their start is given up
+
 
 class _Known(NamedTuple):
     """What a tracker knows of its machine."""
@@ -33,6 +35,7 @@ class _Known(NamedTuple):
     last: OperatingPoint | None = None
     settled: bool = False  # whether the history tells the branch
     origin: float | None = None  # speed from which a response not settled was followed
+    stuck: int = 0  # searches in a row that were broken off
 
 
 class Tracker:
@@ -122,6 +125,8 @@ class Tracker:
 
         No exception is raised. Where there is no solution, or the speed is not positive and
         finite, the solution says so, and the next prediction starts from the last that converged.
+        Only where two searches in a row are broken off, for their time or an exception, the next
+        begins anew: they would be for ever where the last response is one from which none leads.
 
         Parameters
         ----------
@@ -131,6 +136,9 @@ class Tracker:
             When it was measured [s]. With it, speeds that leap away and are back at once are
             taken for wrong, and where they led is forgotten.
         """
+        if not 0.0 < speed < math.inf:
+            reason = f"speed: {speed} rad/s is not allowed, it must be positive and finite"
+            return Tracked(no_solution(self._guide.balance, speed, reason))
         before = self._excursion.returned(speed, time, self._known)
         try:
             with np.errstate(all="ignore"):  # where numbers overflow there is no solution
@@ -142,16 +150,17 @@ class Tracker:
                     return Tracked(point.solution)
                 self._learn(last=point)
                 tracked = self._tracked(point)
+                self._learn(stuck=0)
                 away, wrong = self._excursion.away, before is not None
                 return replace(tracked, doubtful=away, wrong_before=wrong)
         except ResonanceError as error:
             return Tracked(no_solution(self._guide.balance, speed, str(error)))
         except TimeLimitError:
             reason = f"no solution was found within {self._patience:g} s of processor time"
-            return Tracked(no_solution(self._guide.balance, speed, reason))
         except Exception as error:  # a speed or a machine beyond what numbers can hold
             reason = f"{type(error).__name__}: {error}"
-            return Tracked(no_solution(self._guide.balance, speed, reason))
+        self._break_off()
+        return Tracked(no_solution(self._guide.balance, speed, reason))
 
     def _advanced(self, speed: float) -> OperatingPoint:
         last = self._known.last
@@ -163,6 +172,12 @@ class Tracker:
             return there
         self._learn(origin=self._known.origin or speed)
         return pursued(self._guide, last, speed, 0.5 * self._patience)
+
+    def _break_off(self) -> None:
+        """Note that a search was broken off, and after `_STUCK` forget where it started."""
+        stuck = self._known.stuck + 1
+        self._known = self._known._replace(stuck=stuck) if stuck < _STUCK else _Known()
+        self._beside = None
 
     def _tracked(self, point: OperatingPoint) -> Tracked:
         """What there is to say about a point."""

@@ -283,11 +283,9 @@ def test_solution_tells_the_history_of_its_residual_wherever_it_comes_from():
             assert len(said.solution.residuals) == said.solution.iterations + 1
 
 
-def test_exception_is_told_with_its_type():
-    tracker = guided()
-    tracker.change(HarmonicBalance(balance().machine, Harmonics(1)))
-    said = tracker.predict(-1.0)
-    assert said.solution.message.startswith("ValueError: speed: -1.0 rad/s is not allowed")
+def test_speed_that_none_can_be_is_refused_in_words():
+    said = guided().predict(-1.0)
+    assert said.solution.message.startswith("speed: -1.0 rad/s is not allowed")
 
 
 @pytest.mark.parametrize("speed", [np.nan, np.inf, -1.0, 0.0, 1e300])
