@@ -101,6 +101,10 @@ class Model:
         """The machine with all loads that act on it."""
         return _loaded(self.machine, self._loads)
 
+    def loaded_by(self, forces: Mapping[str, tuple[float, float]]) -> Machine:
+        """Return the machine as it would be under other forces [N] in place of those that came."""
+        return _loaded(self.machine, {name: Load(name, force) for name, force in forces.items()})
+
     def change(self, machine: Machine, highest: int) -> None:
         """Go on with other values of the same machine and other harmonics."""
         self.machine = machine
@@ -122,7 +126,7 @@ class Model:
 
     def add(self, load: Load) -> bool:
         """Let a load act, in place of any other at its station; tell whether it is another."""
-        if self._loads.get(load.station) == load:
+        if self._acting(load.station) == load.force:
             return False
         self._loads[load.station] = load
         self._balance = None
@@ -170,6 +174,13 @@ class Model:
             time.perf_counter() - start,
             tracked if solution.converged else None,
         )
+
+    def _acting(self, station: str) -> tuple[float, float]:
+        """The force at a station [N]."""
+        if station in self._loads:
+            return self._loads[station].force
+        own = (load.force for load in self.machine.loads if load.station == station)
+        return next(own, (0.0, 0.0))
 
     def _build(self) -> HarmonicBalance:
         self._balance = HarmonicBalance(self.loaded, self.harmonics)

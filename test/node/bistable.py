@@ -18,6 +18,7 @@ from .process import PAPER_ROTOR
 
 RPM = math.pi / 30.0  # rad/s
 UPPER_ONLY, BOTH, LOWER_ONLY = 3900.0 * RPM, 3998.0 * RPM, 4090.0 * RPM
+CURVE = 300.0  # s until a curve must have come: its process gives way to all others
 HEAVY, LIGHT = 5.039e-4, 2.0e-4  # kg m; with the light unbalance there is a single response
 MACHINE = override_all(
     read_machine(PAPER_ROTOR),
@@ -79,7 +80,7 @@ def settle_at(remote: Remote, speed: float) -> Numbers:
         values.update((pair.key, pair.value) for pair in remote.statuses["Jump"].values)
         return values["model_age_s"] == "0"
 
-    remote.graph.until(known, "the response curve", lambda: remote.predict(speed))
+    remote.graph.until(known, "the response curve", lambda: remote.predict(speed), CURVE)
     return remote.predict(speed)[0]
 
 

@@ -59,16 +59,22 @@ class Graph:
         self.node.destroy_node()
         self.context.try_shutdown()
 
-    def until(self, condition: Callable[[], Any], what: str, between: Any = None) -> Any:
+    def until(
+        self,
+        condition: Callable[[], Any],
+        what: str,
+        between: Any = None,
+        limit: float = LIMIT,
+    ) -> Any:
         """Spin until a condition holds and return what it returned."""
-        end = time.monotonic() + LIMIT
+        end = time.monotonic() + limit
         while time.monotonic() < end:
             if result := condition():
                 return result
             if between is not None:
                 between()
             self._executor.spin_once(timeout_sec=0.05)
-        return pytest.fail(f"{what}: not within {LIMIT} s")
+        return pytest.fail(f"{what}: not within {limit} s")
 
     def collect(self, kind: Any, topic: str, take: Callable[[Any], None], qos: Any = 100) -> None:
         """Hand every message on a topic to a function."""

@@ -74,21 +74,28 @@ def predictor(running: Remote) -> Remote:
     return running
 
 
-def run(remote: Remote, first: float, last: float, seconds: float) -> list[Sample]:
+def run(
+    remote: Remote,
+    first: float,
+    last: float,
+    seconds: float,
+    pause: float = 0.02,
+    part_predicted: float = 0.5,
+) -> list[Sample]:
     """Publish speeds from one to another [rpm] at 50 Hz and return what was predicted of them."""
     sent, begin = {}, time.monotonic()
     while (part := (time.monotonic() - begin) / seconds) < 1.0:
         stamp, speed = remote.now(), first + part * (last - first)
         sent[stamp] = speed
         remote.send(speed * RPM, stamp)
-        wake = time.monotonic() + 0.02
+        wake = time.monotonic() + pause
         remote.graph.until(lambda wake=wake: time.monotonic() >= wake, "time passes")
     found = [
         Sample(stamp, speed, numbers(remote.eccentricity[stamp])["damper_1/max"])
         for stamp, speed in sent.items()
         if stamp in remote.eccentricity
     ]
-    assert len(found) > 0.5 * len(sent)
+    assert len(found) > part_predicted * len(sent)
     return found
 
 

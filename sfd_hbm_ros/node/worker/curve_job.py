@@ -13,7 +13,6 @@ from sfd_hbm_ros.machine import Machine
 from sfd_hbm_ros.response.curves.curve import ResponseCurve, response_curve
 from sfd_hbm_ros.response.curves.detached import detached_branches
 from sfd_hbm_ros.response.curves.judged import CurveBranch
-from sfd_hbm_ros.response.curves.jumps import Direction, Jump, jumps
 
 
 @dataclass(frozen=True)
@@ -30,6 +29,8 @@ class CurveJob:
         Range of the speed [rad/s].
     detached : bool
         Whether to look for detached branches, too.
+    revision : int
+        Which of the states of the machine it is that curves were asked for.
     """
 
     machine: Machine
@@ -37,11 +38,12 @@ class CurveJob:
     lowest: float
     highest: float
     detached: bool = False
+    revision: int = 0
 
 
 @dataclass(frozen=True, eq=False)
 class CurveResult:
-    """A response curve with what is read off it.
+    """A response curve that was asked for.
 
     Attributes
     ----------
@@ -49,8 +51,6 @@ class CurveResult:
         What was asked for.
     curve : ResponseCurve
         The curve, with the eccentricities of all points computed.
-    jumps : tuple of Jump
-        Jumps of a journey up through the range, then of one down.
     detached : tuple of CurveBranch or None
         Detached branches; None where they were not asked for, or are still being looked for.
     seconds : float
@@ -59,7 +59,6 @@ class CurveResult:
 
     job: CurveJob
     curve: ResponseCurve
-    jumps: tuple[Jump, ...]
     detached: tuple[CurveBranch, ...] | None
     seconds: float
 
@@ -112,8 +111,7 @@ def compute(job: CurveJob, progress: Callable[[float], None]) -> Iterator[CurveR
         balance = HarmonicBalance(job.machine, Harmonics(job.harmonics))
         curve = response_curve(balance, job.lowest, job.highest, progress=progress)
         _measure(curve.branches)
-        found = tuple(jump for direction in Direction for jump in jumps(curve, direction))
-        result = CurveResult(job, curve, found, None, time.monotonic() - start)
+        result = CurveResult(job, curve, None, time.monotonic() - start)
     yield result
     if not job.detached:
         return

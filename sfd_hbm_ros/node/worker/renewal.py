@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 QUIET = 0.5
 """Time without a change [s] after which to compute."""
@@ -43,3 +44,25 @@ class Renewal:
             return False
         self._waiting = False
         return True
+
+
+@dataclass
+class MeanLoads:
+    """The mean of the loads [N] that arrived at stations; a load that rests is itself the mean."""
+
+    _count: int = 0
+    _sums: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+    def add(self, forces: Mapping[str, tuple[float, float]]) -> None:
+        """Note the forces (x, y) that act at the stations."""
+        if forces.keys() != self._sums.keys():
+            self._count, self._sums = 0, {}
+        self._count += 1
+        for station, (x, y) in forces.items():
+            before = self._sums.get(station, (0.0, 0.0))
+            self._sums[station] = before[0] + x, before[1] + y
+
+    def forces(self, latest: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+        """Return the mean at every station, or what acts there now where none was noted."""
+        means = {name: (x / self._count, y / self._count) for name, (x, y) in self._sums.items()}
+        return {**latest, **means}

@@ -57,5 +57,7 @@ def _followed(guide: Guide, last: OperatingPoint, speed: float) -> Followed:
         return Followed(None, 0.0, None)
     start = end
     if last.balance is not guide.balance:
-        start = HarmonicBalance(last.balance.machine, harmonics, last.balance.model)
+        start = last.balance
+        if start.harmonics != harmonics:
+            start = HarmonicBalance(start.machine, harmonics, start.model)
     return follow(Way(start, old.speed, end, speed), x.ravel(), last.orientation)

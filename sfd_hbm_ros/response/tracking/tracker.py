@@ -52,11 +52,17 @@ class Tracker:
     patience : float
         Processor time that the search for a response may take [s]; where it is over, a prediction
         has no solution. So it is after a great change for which there is no curve yet.
+
+    Attributes
+    ----------
+    trusted : bool
+        Whether the curve, outdated or not, tells of the machine: its user's judgement.
     """
 
     def __init__(self, balance: HarmonicBalance, patience: float = math.inf) -> None:
         self._guide = Guide(balance)
         self._patience = patience
+        self.trusted = False
         self._beside: tuple[Place, Solution | None] | None = None  # the other stable response
         self._known = _Known()
         self._excursion = Excursion[_Known]()
@@ -183,7 +189,7 @@ class Tracker:
         """What there is to say about a point."""
         solution, place = point.solution, point.place
         others = self._guide.others(solution.speed, place, solution.eccentricity_max)
-        if self.current and place and not others:
+        if (self.current or self.trusted) and place and not others:
             self._learn(settled=True)
         known = place is not None and (self.settled or not others)
         name = branch_name(solution, others) if known else BranchName.UNKNOWN

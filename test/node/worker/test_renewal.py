@@ -1,18 +1,9 @@
-"""When a curve is computed anew, and when an outdated one still tells something."""
-
-from dataclasses import replace
+"""When a curve is computed anew, and for which loads."""
 
 import numpy as np
 import pytest
 
-from sfd_hbm_ros.machine import Load, Machine, override, read_machine
-from sfd_hbm_ros.node.worker.likeness import alike
-from sfd_hbm_ros.node.worker.renewal import LONGEST, QUIET, Renewal
-
-from ..process import PAPER_ROTOR
-
-PAPER = read_machine(PAPER_ROTOR)
-LOADED = replace(PAPER, loads=(Load("disk_3", (3.0, -400.0)),))
+from sfd_hbm_ros.node.worker.renewal import LONGEST, QUIET, MeanLoads, Renewal
 
 
 def computed(changes: list[float], duration: float, end: float) -> list[tuple[float, float]]:
@@ -71,24 +62,13 @@ def test_the_last_change_is_never_forgotten():
         assert found[-1][0] >= last
 
 
-def changed(path: str, factor: float, machine: Machine = LOADED) -> Machine:
-    value = {"dampers.damper_1.viscosity": 0.028, "unbalance.disk_2.magnitude": 4.319e-4}[path]
-    return override(machine, path, value * factor)
-
-
-@pytest.mark.parametrize(
-    ("other", "expected"),
-    [
-        (LOADED, True),
-        (changed("dampers.damper_1.viscosity", 1.019), True),
-        (changed("dampers.damper_1.viscosity", 0.97), False),
-        (changed("unbalance.disk_2.magnitude", 1.03), False),
-        (override(LOADED, "loads.disk_3.force", [-3.0, -400.0]), True),  # it trembles
-        (override(LOADED, "loads.disk_3.force", [20.0, -400.0]), False),
-        (PAPER, False),
-        (override(LOADED, "gravity", True), False),
-    ],
-)
-def test_machines_are_alike_while_no_number_differs_by_much(other, expected):
-    assert alike(LOADED, other) is expected
-    assert alike(other, LOADED) is expected
+def test_the_mean_of_loads_is_that_of_what_came():
+    mean = MeanLoads()
+    latest = {"disk_1": (1.0, -2.0)}
+    assert mean.forces(latest) == latest
+    mean.add({"disk_1": (0.1, 0.0)})
+    assert mean.forces(latest) == {"disk_1": (0.1, 0.0)}  # to the last digit
+    mean.add({"disk_1": (0.3, -6.0)})
+    assert mean.forces(latest) == {"disk_1": pytest.approx((0.2, -3.0))}
+    mean.add({"disk_1": (5.0, 0.0), "disk_2": (7.0, 1.0)})  # a station more begins anew
+    assert mean.forces(latest) == {"disk_1": (5.0, 0.0), "disk_2": (7.0, 1.0)}

@@ -67,14 +67,13 @@ def assert_same(result: CurveResult, expected: CurveResult) -> None:
             np.testing.assert_array_equal(one.coefficients, another.coefficients)
         assert branch.instability == other.instability
         assert branch.stop is other.stop
-    assert [jump.value for jump in result.jumps] == [jump.value for jump in expected.jumps]
 
 
 @pytest.mark.parametrize("job", [QUICK, SLOW], ids=["without jumps", "with jumps"])
 def test_the_result_is_that_of_this_process(worker, job):
     speeds: list[float] = []
     [expected] = compute(job, speeds.append)
-    assert bool(expected.jumps) == (job is SLOW)
+    assert any(branch.fold.any() for branch in expected.curve.branches) == (job is SLOW)
     worker.request(job)
     assert_same(done(worker), expected)
     assert worker.points == len(speeds)
