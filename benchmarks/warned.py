@@ -26,6 +26,7 @@ from sfd_hbm_ros.response.curves.journey import travel
 from sfd_hbm_ros.response.curves.place import Place
 from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.response.integration.observed import LEAST
+from sfd_hbm_ros.response.tracking.excursion import Excursion
 from sfd_hbm_ros.response.warning.acceleration import AccelerationEstimator
 from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
 from sfd_hbm_ros.response.warning.jump_map import jump_map
@@ -62,14 +63,22 @@ class Outcome(NamedTuple):
     about: str = ""
 
 
-def warnings(case: Run, until: float, rng: np.random.Generator) -> list[float]:
-    """When the warning rose and fell in turns [s], as noisy speeds came in until a time [s]."""
+def warnings(case: Run, until: float, rng: np.random.Generator, wrong: float = 0.0) -> list[float]:
+    """When the warning rose and fell in turns [s], as noisy speeds came in until a time [s].
+
+    A part `wrong` of the speeds is measured as half or twice what they are.
+    """
     estimator, alarm, ahead = AccelerationEstimator(), JumpAlarm(SETTINGS), jump_map(case.curve)
     place: Place | None = case.place
+    excursion = Excursion[bool]()
     found: list[float] = []
     for now in np.arange(0.0, until, 1.0 / RATE).tolist():
         speed = case.ramp.start + case.ramp.acceleration * now + rng.normal(0.0, NOISE)
+        speed *= slip(rng, wrong)
         estimator.add(round(now * 1e9), speed)
+        excursion.returned(speed, now, known=True)
+        if excursion.away:  # as the predictor does, which believes no such speed at once
+            continue
         place = travel(case.curve, place, speed).place if place else None
         acceleration = estimator.acceleration
         outlook = (
@@ -81,14 +90,21 @@ def warnings(case: Run, until: float, rng: np.random.Generator) -> list[float]:
     return found
 
 
-def judge(rng: np.random.Generator) -> Outcome:
+def slip(rng: np.random.Generator, wrong: float) -> float:
+    """What a measured speed is multiplied by: half or twice in a part `wrong` of all cases."""
+    if wrong == 0.0 or rng.random() >= wrong:
+        return 1.0
+    return float(rng.choice([0.5, 2.0]))
+
+
+def judge(rng: np.random.Generator, wrong: float = 0.0) -> Outcome:
     """Run a machine and see what became of it."""
     try:
         case = random_run(rng)
         jump = jump_in_time(case)
     except NoSolutionError as error:
         return Outcome(f"not judged: {error}")
-    return outcome(case, jump, warnings(case, min(jump, case.duration), rng))
+    return outcome(case, jump, warnings(case, min(jump, case.duration), rng, wrong))
 
 
 def outcome(case: Run, jump: float, changes: Sequence[float]) -> Outcome:
@@ -140,7 +156,20 @@ def arguments(about: str, runs: int) -> argparse.Namespace:
     parser.add_argument("--runs", type=int, default=runs, help="how many runs")
     parser.add_argument("--first", type=int, default=1, help="number of the first")
     parser.add_argument("--seed", type=int, default=1, help="of all of them")
+    parser.add_argument(
+        "--wrong-speeds", type=float, default=0.0, help="part measured as half or twice"
+    )
+    parser.add_argument(
+        "--load-noise",
+        type=float,
+        default=0.0,
+        help="rms of a load of mean 0 at the first station, 10 Hz [N]; through the node only",
+    )
     given = parser.parse_args()
+    if not 0.0 <= given.wrong_speeds < 0.5:
+        parser.error(f"--wrong-speeds: {given.wrong_speeds} is not allowed, it must be below 0.5")
+    if not 0.0 <= given.load_noise < np.inf:
+        parser.error(f"--load-noise: {given.load_noise} N is not allowed, it must be finite")
     for name, least in (("runs", 1), ("first", 0), ("seed", 0)):
         if getattr(given, name) < least:
             parser.error(f"--{name}: {getattr(given, name)} is not allowed, at least {least} is")
@@ -154,7 +183,8 @@ def main() -> int:
     last = given.first + given.runs - 1
     for number in range(given.first, last + 1):
         begin = time.process_time()
-        verdict, about = judge(np.random.default_rng([given.seed, number]))
+        rng = np.random.default_rng([given.seed, number])
+        verdict, about = judge(rng, given.wrong_speeds)
         counts[verdict] += 1
         took = time.process_time() - begin
         print(f"{number:4} of {last}  {verdict:14}  {about}  ({took:.0f} s)", flush=True)

@@ -52,8 +52,14 @@ def cases(seed: int, first: int) -> Iterator[tuple[int, Run, float]]:
             yield number, case, jump
 
 
-def judge(case: Run, jump: float, rng: np.random.Generator) -> Outcome:
-    """Run a machine before a predictor and see what became of it."""
+def judge(
+    case: Run, jump: float, rng: np.random.Generator, wrong: float = 0.0, load: float = 0.0
+) -> Outcome:
+    """Run a machine before a predictor and see what became of it.
+
+    A part `wrong` of the speeds is half or twice what it should be, and a load of mean 0 and this
+    rms [N] acts at the first station.
+    """
     lowest, highest = span(case.curve.branches)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "machine.yaml"
@@ -70,7 +76,8 @@ def judge(case: Run, jump: float, rng: np.random.Generator) -> Outcome:
         predictor = NodeProcess(
             "predictor", "--ros-args", *log, "-r", f"__ns:={NAMESPACE}", *given
         )
-        machine = WarnedMachine(NAMESPACE, rng)
+        station = case.curve.balance.machine.disks[0].name
+        machine = WarnedMachine(NAMESPACE, rng, wrong, (station, load) if load else None)
         try:
             machine.enter(case.first.value, case.ramp.start)
             changes = machine.run(case.ramp, jump)
@@ -90,7 +97,8 @@ def main() -> int:
     rclpy.init()
     try:
         for number, case, jump in itertools.islice(cases(given.seed, given.first), given.runs):
-            verdict, about = judge(case, jump, np.random.default_rng([given.seed, number]))
+            rng = np.random.default_rng([given.seed, number])
+            verdict, about = judge(case, jump, rng, given.wrong_speeds, given.load_noise)
             counts[verdict] += 1
             print(f"{number:4}  {verdict:12}  {about}", flush=True)
     finally:

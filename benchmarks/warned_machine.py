@@ -6,12 +6,13 @@ import time
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import WrenchStamped
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState, PointCloud2
 
-from benchmarks.warned import NOISE, RATE
+from benchmarks.warned import NOISE, RATE, slip
 from sfd_hbm_ros.node.messages.common import speed_message
 from sfd_hbm_ros.node.messages.monitor import read_warning
 from sfd_hbm_ros.response.integration.ramp import Ramp
@@ -30,6 +31,10 @@ class WarnedMachine(Node):
         That of the predictor.
     rng : Generator
         What makes the noise.
+    wrong : float
+        Part of the speeds that is measured as half or twice.
+    load : (str, float), optional
+        Station and rms of a load of mean 0 that comes ten times a second [N].
 
     Attributes
     ----------
@@ -37,16 +42,25 @@ class WarnedMachine(Node):
         How late a speed of the run was published at most [s].
     """
 
-    def __init__(self, namespace: str, rng: np.random.Generator) -> None:
+    def __init__(
+        self,
+        namespace: str,
+        rng: np.random.Generator,
+        wrong: float = 0.0,
+        load: tuple[str, float] | None = None,
+    ) -> None:
         super().__init__("machine", namespace=namespace)
         self.late = 0.0
-        self._rng = rng
+        self._rng, self._wrong = rng, wrong
         self._curves = 0
         self._warned = False
         self._changes: list[float] = []  # by time.monotonic [s]
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self)
         self._speed = self.create_publisher(JointState, "predictor/speed", 1)
+        self._load = self.create_publisher(WrenchStamped, "predictor/load", 1)
+        if load is not None:
+            self.create_timer(0.1, lambda: self._send_load(*load))
         topic = "predictor/{}".format
         self.create_subscription(
             DiagnosticArray, topic("jump_warning"), self._on_warning, _LATCHED
@@ -80,10 +94,18 @@ class WarnedMachine(Node):
 
     def _send(self, speed: float, until: float) -> None:
         """Publish a speed [rad/s] with noise, and listen until a time."""
-        measured = speed + self._rng.normal(0.0, NOISE)
+        measured = (speed + self._rng.normal(0.0, NOISE)) * slip(self._rng, self._wrong)
         self._speed.publish(speed_message(self.get_clock().now(), measured, 0.0))
         while (left := until - time.monotonic()) > 0.0:
             self._executor.spin_once(timeout_sec=left)
+
+    def _send_load(self, station: str, rms: float) -> None:
+        """Publish a random load [N]."""
+        message = WrenchStamped()
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.header.frame_id = station
+        message.wrench.force.x, message.wrench.force.y = self._rng.normal(0.0, rms, 2).tolist()
+        self._load.publish(message)
 
     def _on_warning(self, message: DiagnosticArray) -> None:
         warned = read_warning(message).level > 0

@@ -107,11 +107,13 @@ def truncation_error(balance: HarmonicBalance, solution: Solution) -> float:
     Returns
     -------
     float
-        Greatest distance between the journals' orbits, of the clearance; infinite where the
-        further harmonics meet an undamped resonance or the estimate cannot be computed.
+        Greatest distance between the journals' orbits, of the clearance; infinite where it cannot
+        be computed: no more harmonics are allowed, or they meet an undamped resonance.
     """
     known = solution.harmonics
     more = _more(known)
+    if more.highest == known.highest:
+        return float("inf")
     try:
         equations = balance.with_harmonics(more).at(solution.speed)
         residual, jacobian = equations.linearise(
@@ -157,7 +159,11 @@ class BranchPlace:
             Of the clearance, or of the parameter's scale, whichever is greater; infinite where it
             cannot be computed.
         """
-        return self.with_harmonics(_more(self.family.balance.harmonics))._stepped()[1]
+        known = self.family.balance.harmonics
+        more = _more(known)
+        if more.highest == known.highest:
+            return float("inf")
+        return self.with_harmonics(more)._stepped()[1]
 
     def with_harmonics(self, harmonics: Harmonics) -> "BranchPlace":
         """The same place, described by other harmonics."""
