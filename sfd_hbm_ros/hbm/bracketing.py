@@ -3,7 +3,10 @@
 `scipy.optimize` would do as well, but takes longer to import than NumPy, and 20 MB of memory.
 """
 
+import math
 from collections.abc import Callable
+
+_PATIENCE = 2  # steps for each halving that bisection would take, after which it bisects
 
 
 def zero_between(
@@ -27,7 +30,7 @@ def zero_between(
     Raises
     ------
     ArithmeticError
-        If the signs do not differ.
+        If the signs do not differ, or a value is not a number.
     """
     newest, f_newest = start, function(start)
     across, f_across = end, function(end)  # on the other side of the zero
@@ -36,9 +39,14 @@ def zero_between(
     if (f_newest > 0.0) == (f_across > 0.0):
         raise ArithmeticError("the function does not change its sign")
     part = f_newest / (f_newest - f_across)
-    while True:
+    halvings = math.ceil(max(math.log2(abs(end - start)) - math.log2(accuracy), 1.0))
+    for step in range((_PATIENCE + 1) * halvings):
+        if newest + 0.5 * (across - newest) in (newest, across):
+            break  # there is no number between them
         x = newest + part * (across - newest)
         f = function(x)
+        if math.isnan(f):
+            raise ArithmeticError("the function has no value")
         if (f > 0.0) == (f_newest > 0.0):
             left, f_left = newest, f_newest
         else:
@@ -47,9 +55,10 @@ def zero_between(
         newest, f_newest = x, f
         nearest = 0.5 * accuracy / abs(across - newest)
         if f == 0.0 or nearest >= 0.5:
-            return newest if abs(f_newest) < abs(f_across) else across
+            break
         part = _interpolated(newest - across, left - across, f_newest, f_across, f_left)
-        part = min(max(part, nearest), 1.0 - nearest)
+        part = min(max(part, nearest), 1.0 - nearest) if step < _PATIENCE * halvings else 0.5
+    return newest if abs(f_newest) < abs(f_across) else across
 
 
 def _interpolated(newest: float, left: float, f: float, f_across: float, f_left: float) -> float:

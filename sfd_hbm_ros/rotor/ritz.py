@@ -29,6 +29,7 @@ from sfd_hbm_ros.rotor.flexibility import Flexibility
 
 _ACCURACY = 1e-9  # what may be left over of each force, relative to it; its square counts
 _RANK = 1e-13  # relative size below which a direction is one that is there already
+_NEW = 0.5  # of a direction, what lies outside the basis, if it is more than rounding
 _EVERY = 4  # blocks between two looks at what is left over
 _SPEEDS = np.linspace(0.1, 1.0, 10)  # of the highest, at which it is looked at
 _NEAREST = 1e-3  # d where it is looked at: closer to a pole rounding decides
@@ -71,7 +72,9 @@ def ritz(
     start = flexibility.down(forces)
     sizes = np.linalg.norm(start, axis=1, keepdims=True)
     space = _Space(start / np.where(sizes > 0.0, sizes, 1.0))
-    while space.grow():
+    for _ in range(start.shape[1]):  # every block has a new direction of those that there are
+        if not space.grow():
+            break
         space.extend(flexibility.down(inertia(flexibility.up(space.latest))))
         if space.blocks % _EVERY == 0 and space.left_over(speed) <= _ACCURACY:
             break
@@ -103,12 +106,18 @@ class _Space:
         """Add the next block's new directions to the basis, and tell whether there are any.
 
         Zeros stand for directions that are there already; they take no part in anything.
+
+        A direction that is short beside the block that it comes from is at right angles to the
+        basis only as far as the rounding of that block lets it be. It is therefore freed of the
+        basis once more at its full length. Else a space that is exhausted would find in rounding
+        directions that it has, for ever.
         """
-        directions, lengths, _ = np.linalg.svd(self._next, full_matrices=False)
-        new = lengths > _RANK * self._scale[:, np.newaxis]
-        if not new.any():
+        candidates = _directions(self._next, _RANK * self._scale)
+        outside = candidates - self._basis @ (self._basis.conj().swapaxes(1, 2) @ candidates)
+        latest = _directions(outside, np.full(len(outside), _NEW))
+        if not latest.any():
             return False
-        self.latest = (directions * new[:, np.newaxis])[..., new.any(axis=0)]
+        self.latest = latest[..., latest.any(axis=(0, 1))]
         self._basis = np.concatenate([self._basis, self.latest], axis=2)
         return True
 
@@ -148,3 +157,13 @@ class _Space:
         gaps = 1.0 - z * values[:, np.newaxis]
         gaps = np.where(np.abs(gaps) < _NEAREST, _NEAREST, gaps)
         return float(np.linalg.norm((share * (z / gaps)) @ loads, axis=2).max())
+
+
+def _directions(vectors: NumberArray, shortest: RealArray) -> NumberArray:
+    """Return an orthonormal basis (m, n, r) of m blocks but for what is as short as that, (m,).
+
+    Zeros stand for what was left out.
+    """
+    directions, lengths, _ = np.linalg.svd(vectors, full_matrices=False)
+    long = lengths > shortest[:, np.newaxis]
+    return np.asarray(directions * long[:, np.newaxis])

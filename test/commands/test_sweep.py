@@ -192,3 +192,12 @@ def test_bad_input_is_refused(options, sentence, capsys):
     assert out == ""
     assert err.startswith(f"sfd_hbm: {sentence}")
     assert err.count("\n") == 1
+
+
+def test_machine_of_few_elements_on_a_damped_anisotropic_bearing(capsys):
+    """Its shaft has no more Ritz vectors than coordinates, which once was waited for in vain."""
+    machine = str(Path(__file__).parents[1] / "defects" / "D1_hang.json")
+    assert main(["sweep", machine, "--rpm", "9000:10500", "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["points"] >= 5
+    assert printed["jumps"] == []

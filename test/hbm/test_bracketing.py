@@ -1,6 +1,7 @@
 """Zeros of functions whose zeros are known, in few evaluations."""
 
 import math
+import random
 from collections.abc import Callable
 
 import pytest
@@ -51,3 +52,31 @@ def test_smooth_function_takes_few_evaluations() -> None:
 def test_function_that_does_not_change_its_sign_is_refused() -> None:
     with pytest.raises(ArithmeticError, match="does not change its sign"):
         zero_between(math.exp, 0.0, 1.0, ACCURACY)
+
+
+def test_accuracy_finer_than_numbers_are_ends_at_their_resolution() -> None:
+    found = zero_between(lambda x: math.copysign(1.0, x - math.pi), 3.0, 4.0, 1e-30)
+    assert found == pytest.approx(math.pi, abs=1e-15)
+
+
+def test_function_without_a_value_is_refused() -> None:
+    with pytest.raises(ArithmeticError, match="no value"):
+        zero_between(lambda x: x if abs(x) == 1.0 else math.nan, -1.0, 1.0, ACCURACY)
+
+
+def test_number_of_steps_is_bounded_for_a_function_made_to_delay_it() -> None:
+    """Neither smooth nor the same twice, so that what is interpolated is always off."""
+    rng = random.Random(1)
+    for _ in range(200):
+        powers = [rng.choice([1, 3, 9, 20]) for _ in range(2)]
+        zero, asked = rng.uniform(-1.0, 1.0), 0
+
+        def function(x: float, zero: float = zero, powers: list[int] = powers) -> float:
+            nonlocal asked
+            asked += 1
+            power = powers[x > zero]
+            return math.copysign(abs(x - zero) ** power * 10.0 ** rng.uniform(-8, 8), x - zero)
+
+        found = zero_between(function, -1.0, 1.0, 1e-12)
+        assert found == pytest.approx(zero, abs=1e-12)
+        assert asked <= 2 + 3 * math.ceil(math.log2(2e12))

@@ -1,6 +1,7 @@
 """What `solve` does beyond a plain Newton iteration: starts, ramps, and named failures."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, NewtonOptions, Outcome, 
 from sfd_hbm_ros.hbm.newton import newton
 from sfd_hbm_ros.hbm.options import DEFAULTS
 from sfd_hbm_ros.hbm.solve import first_guess, raise_load
-from sfd_hbm_ros.machine import MachineError, override
+from sfd_hbm_ros.machine import MachineError, override, read_machine
 
 from .machines import PAPER, UNBEARABLE, random_machine
 
@@ -139,3 +140,13 @@ def test_greatest_eccentricity_lies_between_the_time_samples():
     fine = np.linalg.norm(motion.orbit(200_000), axis=1).max() / motion.clearance
     assert motion.eccentricity_max == pytest.approx(fine, rel=1e-9)
     assert motion.eccentricity_max >= fine
+
+
+def test_twenty_solutions_in_a_row_where_the_shaft_s_vectors_run_out():
+    """From the twentieth on they are in use; the response stays that of a fresh machine."""
+    machine = read_machine(Path(__file__).parents[1] / "defects" / "D1_hang.json")
+    balance = HarmonicBalance(machine, Harmonics(7))
+    for rpm in range(9300, 9425, 5):
+        solution = solve(balance, rpm * RPM)
+    fresh = solve(HarmonicBalance(machine, Harmonics(7)), solution.speed)
+    np.testing.assert_allclose(solution.coefficients, fresh.coefficients, rtol=1e-6, atol=1e-12)

@@ -111,7 +111,7 @@ def _along(curve: ResponseCurve, place: Place, value: float) -> tuple[Place, boo
     """
     sign = 1.0 if value > place.value else -1.0
     branch, index = place.branch, place.index
-    while True:
+    for _ in range(sum(len(one.values) for one in curve.branches)):  # no stretch is met twice
         ends = branch.values[index : index + 2].tolist()
         if min(ends) <= value <= max(ends):
             return place_on(branch, index, value), True
@@ -120,6 +120,7 @@ def _along(curve: ResponseCurve, place: Place, value: float) -> tuple[Place, boo
         if onward is None:
             return Place(branch, index, ends[1] if ahead else ends[0]), False
         branch, index = onward
+    return Place(branch, index, ends[1] if ahead else ends[0]), False
 
 
 def _onward(
