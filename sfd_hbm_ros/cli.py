@@ -15,6 +15,8 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import NoReturn
 
+from sfd_hbm_ros.commands.progress import at_work
+
 VERBS = {
     "solve": "The response at one speed: eccentricity and harmonics of every damper.",
     "sweep": "The response over a range of speeds, or of any entry of the machine file at one.",
@@ -48,7 +50,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             options.set_defaults(run=verb.run)
     chosen = parser.parse_args(given)
     try:
-        with warnings.catch_warnings():  # where numbers overflow, the outcome tells
+        with at_work(chosen.verb), warnings.catch_warnings():
+            # where numbers overflow, the outcome tells
             warnings.simplefilter("ignore", RuntimeWarning)
             chosen.run(chosen)
     except BrokenPipeError:  # the reader of a pipe has seen enough

@@ -55,8 +55,8 @@ def data_of(summary: Summary, path: str | None, seconds: float) -> dict[str, Any
     }
 
 
-def _reach(branch: CurveBranch) -> dict[str, list[float]]:
-    """Where a branch lies, and where it is stable; not a number where it nowhere is."""
+def _reach(branch: CurveBranch) -> dict[str, Any]:
+    """Why a branch ends, where it lies and where it is stable; NaN where it nowhere is."""
     rpm, eccentricity, stable = branch.speed / RPM, branch.worst_eccentricity, branch.stable
 
     def span(values: NDArray[np.float64]) -> list[float]:
@@ -66,6 +66,7 @@ def _reach(branch: CurveBranch) -> dict[str, list[float]]:
         "speed_rpm": span(rpm),
         "eccentricity": span(eccentricity),
         "stable_rpm": span(rpm[stable]),
+        "end": branch.stop.value,
     }
 
 
@@ -100,7 +101,9 @@ def text_of(data: dict[str, Any]) -> str:
         lines.append(f"width of the hysteresis {data['hysteresis']:.6g}")
     if data["amplification_factor"] is not None:
         lines.append(f"amplification factor {data['amplification_factor']:.3f}")
-    lines += [f"ended: {end}" for end in data["ends"] if end != Stop.RANGE.value]
+    ends = [*data["ends"], *(one["end"] for one in data["detached"])]
+    expected = Stop.RANGE.value, Stop.CLOSED.value
+    lines += [f"ended: {end}" for end in ends if end not in expected]
     return "\n".join(lines)
 
 

@@ -6,6 +6,7 @@ as wide in eccentricity as in the parameter.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from scipy.linalg.lapack import dgesv
 
 from sfd_hbm_ros.hbm.family import Family, FamilyMember
 from sfd_hbm_ros.hbm.hermite import along_branch
+from sfd_hbm_ros.hbm.newton import newton
 from sfd_hbm_ros.hbm.options import DEFAULTS, ContinuationOptions, NewtonOptions
 from sfd_hbm_ros.hbm.points import Point
 from sfd_hbm_ros.hbm.time_limit import check_time_limit
@@ -25,7 +27,15 @@ ROUNDING = 1e-8
 
 _OUTSIDE = 1.0 - 1e-9  # eccentricity at which the film's forces can no longer be resolved
 _STAGNATION = 0.1  # ratio of successive residuals that shows that only rounding is left
+_BEYOND = 2.0  # steps within which an end of the range may lie
 _NUDGE = 1e-9  # of the parameter's range, by which an exact resonance is stepped over
+
+
+class _Outside(NamedTuple):
+    """Coefficients with which the parameter has left its range, and at which end."""
+
+    x: Array
+    side: float
 
 
 class Corrector:
@@ -35,8 +45,10 @@ class Corrector:
     ----------
     family : Family
         The equations.
-    start, width : float
-        A value of the parameter, and the width of its range.
+    start : float
+        A value of the parameter.
+    bounds : (2,) tuple of float
+        Its range, outside of which the equations are not asked for.
     options : ContinuationOptions
         Settings, of which the number of iterations counts here.
     newton : NewtonOptions
@@ -52,13 +64,14 @@ class Corrector:
         self,
         family: Family,
         start: float,
-        width: float,
+        bounds: tuple[float, float],
         options: ContinuationOptions | None = None,
         newton: NewtonOptions = DEFAULTS,
     ) -> None:
         self._family, self._newton = family, newton
         self._iterations = (options or ContinuationOptions()).iterations
-        self.scale: Array = np.append(family.at(start).scale, width)
+        self._bounds = bounds
+        self.scale: Array = np.append(family.at(start).scale, bounds[1] - bounds[0])
 
     def known(self, x: Array, value: float, direction: Array, iterations: int = 0) -> Point:
         """A known solution with the tangent that has a positive part along `direction`."""
@@ -66,7 +79,12 @@ class Corrector:
         _, jacobian = equations.linearise(x)
         slope = self._family.slope(equations, value, x)
         matrix = self._bordered(jacobian, slope, direction)
-        return self._with_tangent(equations, value, x, matrix, iterations)
+        try:
+            return self._with_tangent(equations, value, x, matrix, iterations)
+        except np.linalg.LinAlgError:  # at right angles to the direction, as at a fold
+            tangent = np.linalg.svd(matrix[:-1])[2][-1]
+            tangent = tangent if tangent @ direction >= 0.0 else -tangent
+            return Point(value, x, tangent, equations.eccentricity(x), iterations)
 
     def scaled(self, point: Point) -> Array:
         """A point's coefficients and parameter by their scale, (n + 1,)."""
@@ -82,11 +100,31 @@ class Corrector:
 
         Where other neighbours of that one are given, the nearest first, it is sought along all.
         """
+        found = self._sought(point, step, others)
+        return found if isinstance(found, Point) else None
+
+    def following(self, point: Point, step: float, others: Sequence[Point] = ()) -> Point | None:
+        """As `corrected`, or the point at an end of the range if that comes before, if any."""
+        found = self._sought(point, step, others)
+        if not isinstance(found, _Outside):
+            return found
+        end = self._at_value(found.x, found.side, point.tangent)
+        # the end must lie ahead, or it belongs to another stretch of the branch
+        if end is None or not 0.0 < self.distance(point, end) <= _BEYOND * step:
+            return None
+        return end
+
+    def _sought(
+        self, point: Point, step: float, others: Sequence[Point]
+    ) -> "Point | _Outside | None":
         unknowns, before = along_branch([point, *others], self.scale)(step), np.inf
         distance = point.tangent @ self.scaled(point) + step
+        low, high = self._bounds
         for iteration in range(self._iterations + 1):
             check_time_limit()
             value, x = unknowns[-1] * self.scale[-1], unknowns[:-1] * self.scale[:-1]
+            if not low <= value <= high:
+                return _Outside(x, high if value > high else low)
             equations = self._at(value)
             if equations.eccentricity(x) >= _OUTSIDE:
                 return None
@@ -94,27 +132,27 @@ class Corrector:
             slope = self._family.slope(equations, value, x)
             matrix = self._bordered(jacobian, slope, point.tangent)
             norm = float(np.linalg.norm(residual))
-            if self._balanced(equations, x, norm, before):
-                return self._with_tangent(equations, value, x, matrix, iteration)
             constraint = point.tangent @ unknowns - distance
             try:
+                if self._balanced(equations, x, norm, before):
+                    return self._with_tangent(equations, value, x, matrix, iteration)
                 unknowns = unknowns - _solved(matrix, np.append(residual, constraint))
             except np.linalg.LinAlgError:
                 return None
             before = norm
         return None
 
-    def between(self, point: Point, other: Point, value: float) -> Point:
-        """The point at a value of the parameter between those of two neighbours."""
-        part = (value - point.value) / (other.value - point.value)
-        x = point.x + part * (other.x - point.x)
+    def _at_value(self, x: Array, value: float, direction: Array) -> Point | None:
+        """The point at a value of the parameter near coefficients x, if Newton leads there."""
         equations = self._at(value)
-        for _ in range(self._newton.iterations):
-            residual, jacobian = equations.linearise(x)
-            if np.linalg.norm(residual) <= self._newton.tolerance * (equations.load or 1.0):
-                break
-            x = x - np.linalg.solve(jacobian, residual)
-        return self.known(x, value, other.tangent, other.iterations)
+        if not equations.eccentricity(x) < _OUTSIDE:
+            return None
+        result = newton(equations, x, self._newton)
+        norm = result.residuals[-1] * (equations.load or 1.0)
+        forces = float(np.linalg.norm(equations.rotor_force(result.x)))
+        if not (result.outcome.converged or norm <= ROUNDING * forces):
+            return None
+        return self.known(result.x, value, direction, len(result.residuals) - 1)
 
     def _balanced(self, equations: FamilyMember, x: Array, norm: float, before: float) -> bool:
         """Whether the forces balance, or as nearly as the rounding of the condensation allows.
@@ -148,7 +186,8 @@ class Corrector:
         try:
             return self._family.at(value)
         except ResonanceError:  # a single value, beside which the branch goes on
-            return self._family.at(value + _NUDGE * self.scale[-1])
+            beside = value + _NUDGE * self.scale[-1]
+            return self._family.at(beside if beside <= self._bounds[1] else 2.0 * value - beside)
 
 
 def _solved(matrix: Array, right: Array) -> Array:

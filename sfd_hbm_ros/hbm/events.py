@@ -29,7 +29,7 @@ def locate(
     The point, or None where the corrector found no point of the branch on the way.
     """
     length = branch.corrector.distance(before, after)
-    found: dict[float, Point] = {0.0: before}
+    found: dict[float, Point] = {0.0: before, length: after}
 
     def quantity(step: float) -> float:
         point = found.get(step) or branch.corrector.corrected(before, step, [after])

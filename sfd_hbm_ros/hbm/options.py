@@ -61,7 +61,12 @@ class ContinuationOptions:
     eccentricity : float
         Eccentricity at which the branch ends, below 1.
     points : int
-        Largest number of points.
+        Largest number of steps, those that are taken again among them.
+    arc : float
+        Greatest length of the arc: the parameter's whole range counts as 1.
+    progress : float
+        Length of the arc that a hundred steps have to make. One that makes less creeps up to
+        something that it will never reach.
 
     Raises
     ------
@@ -75,7 +80,9 @@ class ContinuationOptions:
     turning: float = 0.3
     iterations: int = 6
     eccentricity: float = 0.995
-    points: int = 20_000
+    points: int = 5_000
+    arc: float = 200.0
+    progress: float = 1e-4
 
     def __post_init__(self) -> None:
         if not 0.0 < self.shortest_step <= self.first_step <= self.longest_step:
@@ -87,3 +94,7 @@ class ContinuationOptions:
             raise OptionError(
                 f"eccentricity: {self.eccentricity} is not allowed, it must be between 0 and 1"
             )
+        for name in ("points", "arc", "progress"):
+            if not getattr(self, name) > 0:
+                value = getattr(self, name)
+                raise ValueError(f"{name}: {value} is not allowed, it must be above 0")

@@ -18,6 +18,8 @@ class Stop(Enum):
     CLEARANCE = "the orbit closes on the clearance"
     STEP = "the step became too short for the corrector to converge"
     POINTS = "the largest number of points was reached"
+    ARC = "the branch became too long: it may go round and round"
+    PROGRESS = "the points came no further: they creep up to a place that they do not reach"
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.hbm.continuation import Branch
+from sfd_hbm_ros.hbm.continuation import Branch, Travel
 from sfd_hbm_ros.hbm.family import SpeedFamily
 from sfd_hbm_ros.hbm.newton import newton
 from sfd_hbm_ros.hbm.options import ContinuationOptions
@@ -87,10 +87,16 @@ class SelectedBranch(Branch):
         group, x, neglect = self._first
         value, direction = self.start, None
         at: SelectedPoint | None = None
+        travel = Travel(options)
         while True:
+            self.stop = travel.add(0.0)
+            if self.stop is not None:
+                return
             family = SpeedFamily(balance.balance(group))
             bounds = (self.low, self.high)
-            branch = Branch(family, x, value, self.end, bounds, options, direction=direction)
+            branch = Branch(
+                family, x, value, self.end, bounds, options, direction=direction, travel=travel
+            )
             for point in branch:
                 if at is not None and point.value == at.point.value:
                     continue  # where the branch was taken up again

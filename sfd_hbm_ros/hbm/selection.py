@@ -80,11 +80,16 @@ class SelectedBalance:
         return self._balances[group]
 
     def neglect(self, group: tuple[int, ...], speed: float, x: Array) -> Neglect:
-        """What a group's solution x at a speed [rad/s] leaves out."""
+        """What a group's solution x at a speed [rad/s] leaves out; the trial group's, nothing."""
+        if group == self.trial.multiples:
+            return Neglect(np.zeros(len(group)), 0.0)
         equations = self.full.at(speed)
         embedded = self.embed(group, x)
         residual, jacobian = equations.linearise(embedded)
-        step: Array = np.linalg.solve(jacobian, -residual).astype(float)
+        try:
+            step: Array = np.linalg.solve(jacobian, -residual).astype(float)
+        except np.linalg.LinAlgError:  # at a fold, where nothing bounds what is left out
+            return Neglect(np.full(len(self.trial.multiples), np.inf), np.inf)
         scaled = step.reshape(equations.force.shape) / self.full.clearances
         amplitudes = np.abs(self.trial.amplitudes(scaled)).max(axis=1)
         return Neglect(amplitudes, 2.0 * equations.eccentricity(step))
@@ -96,15 +101,19 @@ class SelectedBalance:
         return self.trial.change_from(harmonics, shaped).ravel()
 
     def adapt(self, group: tuple[int, ...], x: Array, neglect: Neglect) -> tuple[int, ...]:
-        """The group with what matters taken in and what has ceased to matter left out."""
-        shaped = self.embed(group, x).reshape(self.trial.rows, -1) / self.full.clearances
-        present = np.abs(self.trial.amplitudes(shaped)).max(axis=1)
+        """The group with what matters taken in, or what has ceased to matter left out.
+
+        A group that leaves out too much grows, up to the trial group.
+        """
         inside = np.isin(self.trial.multiples, group)
-        keep = inside & (present > _LEAVE * self.tolerance)
-        keep |= np.isin(self.trial.multiples, self.least)
         if neglect.error > self.tolerance:
             added = np.where(inside, 0.0, neglect.by_order)
-            keep |= added > min(_SHARE * self.tolerance, 0.5 * added.max())
+            grown = inside | (added >= min(_SHARE * self.tolerance, 0.5 * added.max()))
+            return tuple(np.array(self.trial.multiples)[grown].tolist())
+        shaped = self.embed(group, x).reshape(self.trial.rows, -1) / self.full.clearances
+        present = np.abs(self.trial.amplitudes(shaped)).max(axis=1)
+        keep = inside & (present > _LEAVE * self.tolerance)
+        keep |= np.isin(self.trial.multiples, self.least)
         return tuple(np.array(self.trial.multiples)[keep].tolist())
 
     def solve(self, speed: float) -> tuple[tuple[int, ...], Array, Neglect]:

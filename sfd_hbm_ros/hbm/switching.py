@@ -121,7 +121,7 @@ def point_beside(
     options: ContinuationOptions | None = None,
 ) -> Point | None:
     """A point of the branch that leaves a root along its tangent, within the bounds, if any."""
-    corrector = Corrector(family, root.value, bounds[1] - bounds[0], options)
+    corrector = Corrector(family, root.value, bounds, options)
     for step in _STEPS:
         point = corrector.corrected(root, step)
         if point is not None and bounds[0] <= point.value <= bounds[1]:

@@ -2,6 +2,7 @@
 
 import csv
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -30,9 +31,15 @@ def started(output, *options):
 
 
 def ended(study):
-    """The exit status of a started study, and what it has to say."""
+    """The exit status of a started study, and what it has to say but for its progress."""
     _, err = study.communicate(timeout=120)
-    return study.returncode, err
+    return study.returncode, without_progress(err)
+
+
+def without_progress(err):
+    """What was said on standard error without the lines that tell that a command is at work."""
+    lines = err.splitlines(keepends=True)
+    return "".join(line for line in lines if not re.match(r"\w+: at work for \d+ s", line))
 
 
 def wait_for_outcomes(output, number, study):

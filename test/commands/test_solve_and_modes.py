@@ -11,13 +11,17 @@ import pytest
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.machine import override, read_machine
 
+from .studies import without_progress
+
 ROOT = Path(__file__).parents[2]
 PAPER = str(ROOT / "config" / "paper_rotor.yaml")
 
 
 def run(*arguments):
     command = [sys.executable, "-m", "sfd_hbm_ros", *arguments]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
+    done.stderr = without_progress(done.stderr)
+    return done
 
 
 def test_solve_prints_what_the_library_computes():

@@ -11,6 +11,7 @@ import pytest
 
 from sfd_hbm_ros.cli import main
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
+from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.machine import override, read_machine
 from sfd_hbm_ros.response.curves.curve import response_curve
 
@@ -82,6 +83,22 @@ def test_entry_of_the_machine_file_varies(capsys):
     balance = HarmonicBalance(machine, Harmonics(1))
     [branch] = response_curve(balance, 3800 * RPM, 3801 * RPM).branches
     assert branch.worst_eccentricity[0] == pytest.approx(peak["eccentricity"], rel=1e-8)
+
+
+def test_limits_of_an_entry_are_checked_before_anything_is_computed(capsys):
+    vary = ["--vary", "materials.steel.poisson_ratio=0.1:0.6"]
+    assert main(["sweep", PAPER, "--rpm", "3800", *vary]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("sfd_hbm: materials.steel.poisson_ratio must be a finite number above")
+    assert err.endswith("not 0.6\n")
+
+
+def test_an_end_of_a_detached_branch_has_its_reason(capsys):
+    options = ["--rpm", "4100:4170", "--harmonics", "1", "--detached", "--json"]
+    assert main(["sweep", PAPER, *options]) == 0
+    [detached] = json.loads(capsys.readouterr().out)["detached"]
+    assert detached["end"] in {stop.value for stop in Stop}
 
 
 @pytest.fixture(scope="module")

@@ -149,6 +149,57 @@ def test_any_parameter_can_vary(path, start, end):
     assert points[-1].x == pytest.approx(direct.coefficients.ravel(), abs=1e-10)
 
 
+@pytest.mark.parametrize(
+    ("path", "start", "end"),
+    [
+        ("unbalance.disk_2.magnitude", 0.0, 4e-5),
+        ("unbalance.disk_2.magnitude", 4e-5, 0.0),
+        ("materials.steel.poisson_ratio", 0.485, 0.49999),
+        ("materials.steel.poisson_ratio", 0.49999, 0.485),
+    ],
+)
+def test_a_parameter_varies_from_and_to_a_limit_of_its_entry(path, start, end):
+    """The machine is not asked for beyond its limits, neither for a slope nor for a point."""
+    speed, balance = 3800 * RPM, HarmonicBalance(PAPER, Harmonics(1))
+    family = ParameterFamily(balance, speed, path, (min(start, end), max(start, end)))
+    first = solve(family.at(start).balance, speed).coefficients.ravel()
+    branch = Branch(family, first, start, end)
+    points = list(branch)
+    assert branch.stop is Stop.RANGE
+    assert points[-1].value == end
+    direct = solve(family.at(end).balance, speed)
+    assert points[-1].x == pytest.approx(direct.coefficients.ravel(), abs=1e-10)
+
+
+def test_a_branch_up_to_a_resonance_ends():
+    """Near an outer diameter of 31.4 mm the shaft, its journal held, is critical at 4 050 rpm."""
+    speed, path = 4050 * RPM, "shaft.0.outer_diameter"
+    balance = HarmonicBalance(heavier(PAPER, 5.039 / 4.319), Harmonics(1))
+    family = ParameterFamily(balance, speed, path, (0.028, 0.0325))
+    first = solve(family.at(0.0325).balance, speed).coefficients.ravel()
+    branch = Branch(family, first, 0.0325, 0.028, options=ContinuationOptions(points=150))
+    points = list(branch)
+    assert branch.stop is Stop.CLEARANCE
+    assert points[-1].eccentricity > branch.options.eccentricity
+    assert points[-1].value == pytest.approx(0.03143, abs=2e-5)
+
+
+@pytest.mark.parametrize(
+    ("limits", "stop", "most"),
+    [
+        ({"points": 5}, Stop.POINTS, 6),
+        ({"arc": 0.3}, Stop.ARC, 40),
+        ({"progress": 10.0}, Stop.PROGRESS, 101),
+    ],
+    ids=["points", "arc", "progress"],
+)
+def test_every_limit_ends_a_branch_and_keeps_its_points(limits, stop, most):
+    branch = follow(PAPER, 3000 * RPM, 4150 * RPM, harmonics=1, longest_step=0.01, **limits)
+    points = list(branch)
+    assert branch.stop is stop
+    assert 5 <= len(points) <= most
+
+
 @pytest.mark.parametrize("path", ["dampers.damper_1.viscosity", "dampers.damper_1.clearance"])
 def test_slope_by_a_parameter(path):
     balance = HarmonicBalance(override(PAPER, "gravity", True), Harmonics(3))
@@ -188,6 +239,8 @@ def assert_slope(family, value):
         ({"first_step": 0.1}, "steps: .* must be positive and rise"),
         ({"shortest_step": 0.0}, "steps: .* must be positive and rise"),
         ({"eccentricity": 1.0}, "eccentricity: 1.0 .* between 0 and 1"),
+        ({"points": 0}, "points: 0 .* above 0"),
+        ({"arc": -1.0}, "arc: -1.0 .* above 0"),
     ],
 )
 def test_options_out_of_range_are_refused(options, words):

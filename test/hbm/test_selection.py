@@ -7,6 +7,7 @@ import pytest
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.hbm.newton import newton
+from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.hbm.selected_branch import SelectedBranch
 from sfd_hbm_ros.hbm.selection import SelectedBalance
 from sfd_hbm_ros.machine import override_all
@@ -31,6 +32,16 @@ def test_branch_lies_within_the_tolerance_of_the_full_one(changes, tolerance):
         full = newton(equations, embedded)
         assert full.outcome.converged
         assert equations.eccentricity(full.x - embedded) <= at.neglect.error + 1e-9
+
+
+def test_a_tolerance_that_rounding_exceeds_takes_the_whole_group():
+    """What the trial group itself finds is what it is compared to."""
+    balance = SelectedBalance(override_all(PAPER, {"gravity": True}), Harmonics(3), 1e-13)
+    branch = SelectedBranch(balance, 3000 * RPM, 3002 * RPM)
+    points = list(branch.selected())
+    assert branch.stop is Stop.RANGE
+    assert points[-1].point.value == 3002 * RPM
+    assert {at.group for at in points} == {(0, 1, 2, 3)}
 
 
 def test_group_grows_with_the_tolerance_and_does_not_flicker():

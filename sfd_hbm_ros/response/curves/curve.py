@@ -140,8 +140,15 @@ def parameter_curve(
     """Follow the response at one speed [rad/s] over a range of an entry of the machine file.
 
     Further parameters and errors are those of `response_curve`; `path` is dotted.
+
+    Raises
+    ------
+    MachineError
+        If the machine cannot be with the value at an end of the range.
     """
-    family = ParameterFamily(balance, speed, path)
+    family = ParameterFamily(balance, speed, path, (min(start, end), max(start, end)))
+    for value in (start, end):  # before anything is computed
+        family.machine(value)
     branch_from = partial(_solved_branch, family, options)
     return _curve(family, start, end, options, progress, branch_from)
 
