@@ -120,7 +120,7 @@ def truncation_error(balance: HarmonicBalance, solution: Solution) -> float:
             more.change_from(known, solution.coefficients).ravel()
         )
         step: Array = np.linalg.solve(jacobian, residual).astype(float)
-    except (ResonanceError, np.linalg.LinAlgError):
+    except (ResonanceError, ArithmeticError, np.linalg.LinAlgError):
         return float("inf")
     return _finite_or_infinite(equations.eccentricity(step))
 
@@ -192,7 +192,7 @@ class BranchPlace:
             slope = self.family.slope(equations, self.value, self.x) * self.scale
             matrix = np.column_stack([jacobian * equations.scale, slope])
             step: Array = np.linalg.lstsq(matrix, residual, rcond=None)[0].astype(float)
-        except (ResonanceError, np.linalg.LinAlgError):
+        except (ResonanceError, ArithmeticError, np.linalg.LinAlgError):
             return self, float("inf")
         x, value = step[:-1] * equations.scale, float(step[-1])
         moved = _finite_or_infinite(max(equations.eccentricity(x), abs(value)))

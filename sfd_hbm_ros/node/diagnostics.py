@@ -14,6 +14,9 @@ from sfd_hbm_ros.response.warning.settings import Level
 RECENT = 5.0
 """For how long [s] a dropped input or a caught exception keeps its warning."""
 
+COARSE = 1e-3
+"""Truncation error [of the clearance] that is warned of: it shows in the published numbers."""
+
 
 @dataclass(frozen=True)
 class Status:
@@ -74,9 +77,16 @@ def solver_status(prediction: Prediction | None, predictions: int, failures: int
         "residual [of the load]": f"{prediction.residual:.3g}",
         "iterations": str(prediction.iterations),
         "time [ms]": f"{1e3 * prediction.seconds:.3g}",
+        "truncation error [of the clearance]": f"{prediction.truncation:.2g}",
     }
-    level = Level.ERROR if prediction.failed else Level.OK
-    return Status("Solver", level, prediction.message, values)
+    level, message = Level.ERROR if prediction.failed else Level.OK, prediction.message
+    if prediction.truncation > COARSE:
+        level = max(level, Level.WARN)
+        message += (
+            f"; more harmonics would move the orbit by {prediction.truncation:.1g} of the "
+            "clearance: raise the parameter harmonics"
+        )
+    return Status("Solver", level, message, values)
 
 
 def inputs_status(

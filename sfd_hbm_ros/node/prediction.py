@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion
+from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion, Solution
+from sfd_hbm_ros.hbm.truncation import truncation_error
 from sfd_hbm_ros.machine import Load, Machine
 from sfd_hbm_ros.node.inputs import Rim
 from sfd_hbm_ros.response.tracking.tracked import Tracked
@@ -19,6 +20,8 @@ AT_REST = "the rotor is at rest: there is nothing to predict"
 
 PATIENCE = 0.4
 """Processor time that a prediction may take [s], lest the heartbeat stop meanwhile."""
+
+_ESTIMATE_EVERY = 5.0  # s, from one estimate of the truncation error to the next
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,9 @@ class Prediction:
         Time it took [s].
     tracked : Tracked or None
         The operating point; None where there is no solution.
+    truncation : float
+        What more harmonics would add when that was last estimated, of the clearance; NaN where it
+        is not known.
     """
 
     speed: float
@@ -53,6 +59,7 @@ class Prediction:
     iterations: int = 0
     seconds: float = 0.0
     tracked: Tracked | None = None
+    truncation: float = float("nan")
 
     @property
     def others(self) -> Mapping[str, JournalMotion]:
@@ -89,6 +96,7 @@ class Model:
         self.harmonics = Harmonics(highest)
         self._loads: dict[str, Load] = {}
         self._balance: HarmonicBalance | None = None
+        self._truncation, self._estimated = math.nan, -math.inf
         self.tracker = Tracker(self._build(), PATIENCE)
 
     @property
@@ -173,7 +181,17 @@ class Model:
             solution.iterations,
             time.perf_counter() - start,
             tracked if solution.converged else None,
+            self._truncation_error(solution) if solution.converged else math.nan,
         )
+
+    def _truncation_error(self, solution: Solution) -> float:
+        """What more harmonics would add; it costs as much as a prediction, and changes slowly."""
+        now = time.monotonic()
+        if now - self._estimated > _ESTIMATE_EVERY:
+            with np.errstate(all="ignore"):
+                self._truncation = truncation_error(self.balance(), solution)
+            self._estimated = now
+        return self._truncation
 
     def _acting(self, station: str) -> tuple[float, float]:
         """The force at a station [N]."""

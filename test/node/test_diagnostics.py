@@ -4,6 +4,8 @@ import math
 
 import pytest
 
+from sfd_hbm_ros.kernels import load_kernels
+from sfd_hbm_ros.machine import override_all, read_machine
 from sfd_hbm_ros.node.diagnostics import (
     RECENT,
     Level,
@@ -14,7 +16,10 @@ from sfd_hbm_ros.node.diagnostics import (
     solver_status,
 )
 from sfd_hbm_ros.node.inputs import Drops, Feed
-from sfd_hbm_ros.node.prediction import Prediction
+from sfd_hbm_ros.node.prediction import Model, Prediction
+from sfd_hbm_ros.units import RPM
+
+from .process import PAPER_ROTOR
 
 SECOND = 10**9
 
@@ -81,7 +86,23 @@ def test_solver_tells_a_failure_and_none_at_rest():
         "residual [of the load]": "0.5",
         "iterations": "40",
         "time [ms]": "20",
+        "truncation error [of the clearance]": "nan",
     }
+
+
+def test_solver_warns_of_harmonics_that_are_too_few():
+    """A soft spring under gravity: 3 harmonics leave a thousandth of the clearance, 11 do not."""
+    soft = {"gravity": True, "dampers.damper_1.centering_stiffness": 2.627e5}
+    machine = override_all(read_machine(PAPER_ROTOR), soft)
+    load_kernels()  # which takes longer than a prediction may
+    few, enough = (
+        solver_status(Model(machine, highest).predict(2000.0 * RPM), 1, 0) for highest in (3, 11)
+    )
+    key = "truncation error [of the clearance]"
+    assert few.level == Level.WARN
+    assert "more harmonics would move the orbit by 0.001 of the clearance" in few.message
+    assert float(few.values[key]) > 1e-3 > 1e-5 > float(enough.values[key])
+    assert enough.level == Level.OK
 
 
 def test_model_tells_why_there_is_none():
