@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from sfd_hbm_ros import __version__
+
 ROOT = Path(__file__).parents[1]
 MANIFEST = ET.parse(ROOT / "package.xml").getroot()
 KEYED = ("matplotlib", "numba", "numpy", "scipy", "yaml")
@@ -48,6 +50,7 @@ def test_setup_py_and_package_xml_agree() -> None:
     command = [sys.executable, "setup.py", "--name", "--version", "--license"]
     printed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     assert printed.split() == [MANIFEST.findtext(tag) for tag in ("name", "version", "license")]
+    assert __version__ == MANIFEST.findtext("version")
 
 
 def test_every_import_is_declared() -> None:

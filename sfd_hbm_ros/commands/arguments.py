@@ -15,6 +15,8 @@ from sfd_hbm_ros.units import RPM
 MAX_HARMONICS = 100
 """Orders to 60 were needed at 0.99 of the clearance; a slip must not fill time and memory."""
 
+_MOST_WARNINGS = 8  # at a time, as one slip may be repeated in every segment of a shaft
+
 
 class UsageError(ValueError):
     """Arguments that cannot be, in one sentence."""
@@ -86,7 +88,9 @@ def read_changed_machine(chosen: argparse.Namespace) -> Machine:
 
 def warn(sentences: Iterable[str]) -> None:
     """Print warnings on standard error, which leave result and exit status alone."""
-    for sentence in sentences:
+    every = list(sentences)
+    more = [f"and {len(every) - _MOST_WARNINGS} more"] if len(every) > _MOST_WARNINGS else []
+    for sentence in every[:_MOST_WARNINGS] + more:
         print(f"sfd_hbm: warning: {sentence}", file=sys.stderr)
 
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from sfd_hbm_ros.commands.arguments import UsageError
+from sfd_hbm_ros.machine.safe_file import reason
 
 
 def check_outputs(chosen: argparse.Namespace, tables: Sequence[str] = (".csv",)) -> None:
@@ -59,11 +60,6 @@ def check_figures(folder: Path) -> None:
         there = there.parent
     _check_folder(place, there)
     _check_picture(place, Path("figure.png"))
-
-
-def reason(error: Exception) -> str:
-    """What an error says, without its number."""
-    return getattr(error, "strerror", None) or str(error)
 
 
 def _is_same_file(one: Path, other: Path) -> bool:

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from sfd_hbm_ros import __version__
 from sfd_hbm_ros.commands.arguments import (
     UsageError,
     add_harmonics,
@@ -17,6 +18,7 @@ from sfd_hbm_ros.commands.arguments import (
     print_json,
     read_changed_machine,
     speed_from,
+    warn,
 )
 from sfd_hbm_ros.commands.files import check_outputs
 from sfd_hbm_ros.commands.progress import Progress, share_bar
@@ -86,6 +88,8 @@ def run(chosen: argparse.Namespace) -> None:
     write = study_writer(chosen.output)
     with Journal(chosen.journal, _identity(chosen, task)) as journal:
         kept = len(journal.outcomes)
+        if journal.damaged:
+            warn([f"{journal.path}: {journal.damaged} damaged lines are computed again"])
         with Progress(share_bar(kept, len(design), "variants")) as progress:
             results = complete(journal, design, _computer(task, chosen.scheduler), progress)
     write(results)
@@ -127,6 +131,7 @@ def _study(chosen: argparse.Namespace, machine: Machine) -> tuple[Design, Task]:
 def _identity(chosen: argparse.Namespace, task: Task) -> dict[str, Any]:
     """All that the outcomes depend on."""
     return {
+        "version": __version__,
         "machine": machine_to_dict(task.machine),
         "rpm": sorted(range_from("--rpm", chosen.rpm)),
         "vary": chosen.vary,

@@ -39,8 +39,9 @@ def _check_shaft(machine: Machine) -> None:
         raise MachineError(
             f"must have 1 to {MAX_ELEMENTS} elements, not {show(elements)}", "shaft"
         )
+    known = set(machine.materials)
     for index, segment in enumerate(machine.shaft):
-        if segment.material not in machine.materials:
+        if segment.material not in known:
             names = [material.name for material in machine.materials]
             problem = not_one_of("machine's materials", names, segment.material.name)
             wanted = "must be one of the machine's materials"

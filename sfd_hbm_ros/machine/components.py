@@ -43,7 +43,7 @@ class ShaftSegment(Part):
     place: ClassVar[str] = "shaft"
 
     elements: Annotated[int, integer("number of elements", least=1)]
-    length: Annotated[float, number("length of one element", "m", above=0.0, usual=(1e-4, 2.0))]
+    length: Annotated[float, number("length of one element", "m", above=0.0, usual=(1e-6, 2.0))]
     outer_diameter: Annotated[float, number("outer diameter", "m", above=0.0, usual=(1e-3, 2.5))]
     inner_diameter: Annotated[
         float, number("inner diameter", "m", least=0.0, usual=(1e-4, 2.5), default=0.0)

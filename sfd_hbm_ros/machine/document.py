@@ -15,7 +15,11 @@ from sfd_hbm_ros.machine.errors import MachineError, show_key
 from sfd_hbm_ros.machine.safe_file import FilePath, TooLargeError, read_regular, reason
 
 MAX_BYTES = 256 * 1024
-"""Room for two thousand shaft segments, and little enough to be parsed within seconds."""
+"""Room for two thousand shaft segments, and little enough to be read at once."""
+
+MAX_NODES = 25_000
+"""Values, keys, lists and mappings: as many as two thousand shaft segments have. The time that
+reading takes goes with their number."""
 
 MAX_DEPTH = 12
 """Twice what a machine file needs."""
@@ -29,8 +33,8 @@ def read_document(path: FilePath) -> Any:
     Raises
     ------
     MachineError
-        If the file cannot be read, is too large or empty, is not UTF-8 or not YAML, holds several
-        documents, a key twice or an alias, or nests too deeply.
+        If the file cannot be read, is no regular file, too large or empty, is not UTF-8 or not
+        YAML, holds several documents, a key twice or an alias, too much, or nests too deeply.
     """
     try:
         content = read_regular(path, MAX_BYTES, follow=True)
@@ -84,6 +88,7 @@ class _StrictLoader(yaml.BaseLoader):
     """A loader without types, aliases, repeated keys and deep nesting."""
 
     depth = 0
+    nodes = 0
 
     def fetch_alias(self) -> NoReturn:
         """Refuse an alias: with it, a small file can be a huge tree."""
@@ -93,6 +98,10 @@ class _StrictLoader(yaml.BaseLoader):
         """Refuse nesting so deep that it would exhaust the stack."""
         if parent is not None and self.depth > MAX_DEPTH:
             raise _RefusedError(f"more than {MAX_DEPTH} levels are not allowed", parent.start_mark)
+        self.nodes += 1
+        if self.nodes > MAX_NODES:
+            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
+            raise _RefusedError(f"more than {MAX_NODES} keys and values are not allowed", mark)
         self.depth += 1
         node = super().compose_node(parent, index)
         self.depth -= 1

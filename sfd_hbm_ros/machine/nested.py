@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, cast
 
 from sfd_hbm_ros.machine.errors import MachineError, dotted, not_one_of, show, show_key
 from sfd_hbm_ros.machine.parts import Part, plain, read
@@ -73,11 +73,10 @@ def reference(about: str, kind: type[Part]) -> Rule:
     """Return the rule of a field that holds one of the materials: in a file, its name."""
 
     def from_data(data: Any, key: str, materials: Any) -> Part:
-        by_name: dict[Any, Part] = {material.name: material for material in materials}
-        if not (isinstance(data, str) and data in by_name):
+        if not (isinstance(data, str) and data in materials):
             wanted = "must be one of the materials"
-            raise MachineError(not_one_of("materials", by_name, data), key, discreet=wanted)
-        return by_name[data]
+            raise MachineError(not_one_of("materials", materials, data), key, discreet=wanted)
+        return cast(Part, materials[data])
 
     def to_data(part: Any) -> str:
         return str(part.name)

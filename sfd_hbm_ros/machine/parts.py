@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields
+from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar, get_type_hints
 
 from sfd_hbm_ros.machine.errors import MachineError, dotted, show, show_key, unknown
@@ -76,7 +77,9 @@ def doubts(part: Part, place: str = "") -> Iterator[str]:
             yield f"{dotted(place, key)} {words}"
 
 
-def read(kind: type[P], data: object, place: str, materials: Any = (), **given: object) -> P:
+def read(
+    kind: type[P], data: object, place: str, materials: Any = MappingProxyType({}), **given: object
+) -> P:
     """Return the part that plain data describe.
 
     Parameters
@@ -87,8 +90,8 @@ def read(kind: type[P], data: object, place: str, materials: Any = (), **given: 
         The file's data.
     place : str
         Dotted key of the data.
-    materials : tuple of Material
-        What the part may refer to.
+    materials : mapping of str to Material
+        What the part may refer to, by name.
     **given
         Fields that stand elsewhere than among the data.
 
@@ -103,8 +106,9 @@ def read(kind: type[P], data: object, place: str, materials: Any = (), **given: 
     for key, rule in expected.items():
         if key in entries:
             # A segment's material is one of the machine's, whose rule comes before the shaft's.
-            known = values.get("materials", materials)
-            values[key] = rule.read(entries[key], dotted(place, key), known)
+            if "materials" in values:
+                materials = {part.name: part for part in values["materials"]}
+            values[key] = rule.read(entries[key], dotted(place, key), materials)
         elif key not in values:
             raise MachineError(f"is missing: {rule.about}, {rule.allowed}", key, place)
     try:

@@ -1,5 +1,6 @@
 """Variants computed by the workers of a Dask cluster."""
 
+import asyncio
 import importlib
 from collections.abc import Iterator
 from typing import Any
@@ -8,6 +9,7 @@ from sfd_hbm_ros.study.errors import IncompleteError
 from sfd_hbm_ros.study.processes import Variants
 from sfd_hbm_ros.study.task import Outcome, Task
 
+_PATIENCE = 10.0  # with a scheduler that does not answer [s]
 _LINE = "\n"  # Dask's errors go on for several
 
 
@@ -57,8 +59,23 @@ def on_cluster(task: Task, variants: Variants, address: str) -> Iterator[tuple[i
 
 
 def _client(distributed: Any, address: str) -> Any:
+    """A client of the scheduler; a client that finds none does not end by itself, so ask first."""
     try:
-        return distributed.Client(address, timeout="10s", set_as_default=False)
-    except (OSError, ValueError) as error:
-        reason = str(error).partition(_LINE)[0]
+        kind = asyncio.run(asyncio.wait_for(_asked(distributed, address), _PATIENCE))
+        if kind != "Scheduler":
+            raise OSError(f"what answers is a Dask {kind}")
+        return distributed.Client(address, timeout=_PATIENCE, set_as_default=False)
+    except Exception as error:  # from sockets, from names, and from what else may listen there
+        reason = str(error).partition(_LINE)[0] or "no answer in time"
         raise OSError(f"--scheduler {address}: no Dask scheduler answers: {reason}") from None
+
+
+async def _asked(distributed: Any, address: str) -> str:
+    """What kind of server is at an address by its own words."""
+    security = distributed.Security().get_connection_args("client")
+    link = await distributed.comm.connect(address, timeout=_PATIENCE, **security)
+    try:
+        await link.write({"op": "identity", "reply": True})
+        return str((await link.read()).get("type"))
+    finally:
+        link.abort()

@@ -1,8 +1,9 @@
 """The work on one variant: its response curve, and what an engineer reads off it."""
 
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, get_args, get_type_hints
 
 import numpy as np
 
@@ -41,6 +42,26 @@ class Outcome:
     peak_eccentricity: float | None
     seconds: float
     reason: str
+
+
+def outcome_from(data: Mapping[str, Any]) -> Outcome:
+    """The outcome of the data that `dataclasses.asdict` made of it.
+
+    Raises
+    ------
+    TypeError
+        If it is none.
+    """
+    outcome = Outcome(**data)
+    for field in fields(Outcome):
+        value = getattr(outcome, field.name)
+        kinds = get_args(_KINDS[field.name]) or (_KINDS[field.name],)
+        if type(value) not in kinds and not (type(value) is int and float in kinds):
+            raise TypeError(f"{field.name}: {value!r}")
+    return outcome
+
+
+_KINDS = get_type_hints(Outcome)
 
 
 @dataclass(frozen=True)

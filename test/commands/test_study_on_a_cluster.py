@@ -1,13 +1,21 @@
 """The verb `study` on a Dask cluster of two worker processes, of which one is killed."""
 
 import json
+import socket
 import subprocess
 import sys
 import time
 
 import pytest
 
+from sfd_hbm_ros.hbm import Harmonics
+from sfd_hbm_ros.machine import read_machine
+from sfd_hbm_ros.study import cluster as cluster_module
+from sfd_hbm_ros.study.cluster import on_cluster
+from sfd_hbm_ros.study.task import Task
+
 from .studies import (
+    PAPER,
     ROOT,
     VARIANTS,
     ended,
@@ -19,6 +27,8 @@ from .studies import (
 )
 
 pytest.importorskip("distributed", reason="Dask's distributed is not installed")
+
+TASK = Task(read_machine(PAPER), ("dampers.damper_1.viscosity",), 400.0, 401.0, Harmonics(1))
 
 
 @pytest.fixture
@@ -75,3 +85,19 @@ def test_no_scheduler_is_status_2_and_one_sentence(tmp_path):
     sentence = "sfd_hbm: --scheduler tcp://127.0.0.1:9: no Dask scheduler answers: "
     assert err.startswith(sentence)
     assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("address", ["", "foo", "tcp://", "127.0.0.1:port", "no_such://1.2.3.4:5"])
+def test_what_is_no_address_is_told_at_once(address):
+    with pytest.raises(OSError, match="no Dask scheduler answers: ") as one:
+        next(on_cluster(TASK, {0: (0.028,)}, address))
+    assert "\n" not in str(one.value)
+
+
+def test_a_server_that_says_nothing_is_not_waited_for_without_end(monkeypatch):
+    """As anything that listens may be, from a printer on."""
+    monkeypatch.setattr(cluster_module, "_PATIENCE", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(OSError, match="no Dask scheduler answers: "):
+            next(on_cluster(TASK, {0: (0.028,)}, address))

@@ -1,11 +1,20 @@
 """Files that no machine can be read from: each sentence begins with the path and says why."""
 
+import cProfile
 import os
+import re
 from pathlib import Path
 
 import pytest
 
-from sfd_hbm_ros.machine import Machine, MachineError, read_machine, write_machine
+from sfd_hbm_ros.machine import (
+    Machine,
+    MachineError,
+    machine_from_dict,
+    machine_to_dict,
+    read_machine,
+    write_machine,
+)
 from sfd_hbm_ros.machine.document import MAX_BYTES, parse
 
 
@@ -80,6 +89,44 @@ def test_a_file_beyond_all_memory_is_refused(tmp_path: Path) -> None:
     path.touch()
     os.truncate(path, 2**40)  # a hole: it takes no place on the disk
     assert refusal(path) == "is larger than the 256 KiB allowed"
+
+
+@pytest.mark.parametrize("text", ["[" + "a," * 130_000, "a: 1\n" * 50_000, "- {}\n" * 50_000])
+def test_more_than_a_machine_needs_is_refused_early(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "machine.yaml"
+    path.write_text(text, encoding="utf-8")
+    assert re.fullmatch(
+        r"line \d+, column \d+: more than 25000 keys and values are not allowed", refusal(path)
+    )
+
+
+@pytest.mark.parametrize("materials", [1, 1900])
+def test_as_many_segments_as_anybody_needs_are_read(
+    tmp_path: Path, paper_file: Path, materials: int
+) -> None:
+    """The time goes with their number: each takes as many calls as in a file with a tenth."""
+    counts = []
+    for number in (190, 1900):
+        data = machine_to_dict(read_machine(paper_file))
+        [steel] = data["materials"].values()
+        names = [f"steel_{i}" for i in range(max(1, number * materials // 1900))]
+        data["materials"] = dict.fromkeys(names, steel)
+        [segment] = data["shaft"]
+        data["shaft"] = [
+            {**segment, "elements": 1, "material": names[i % len(names)]} for i in range(number)
+        ]
+        profile = cProfile.Profile()
+        assert len(profile.runcall(machine_from_dict, data).shaft) == number
+        counts.append(sum(entry.callcount for entry in profile.getstats()))
+    assert counts[1] < 11 * counts[0]
+
+
+def test_what_is_no_regular_file_is_refused_without_waiting(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    assert refusal(tmp_path / "pipe") == "cannot be read: not a regular file"
+    assert refusal(Path("/dev/zero")) == "cannot be read: not a regular file"
+    (tmp_path / "link").symlink_to("/dev/tty")
+    assert refusal(tmp_path / "link").startswith("cannot be read: ")
 
 
 @pytest.mark.parametrize("opening", ["[", "{a: ", "- ", "? "])

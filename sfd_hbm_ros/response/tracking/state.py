@@ -103,7 +103,10 @@ def from_plain(content: Mapping[str, Any]) -> State:
     """
     given = content["harmonics"]
     multiples = tuple(given["multiples"])
-    harmonics = Harmonics(given["highest"], given["samples"], given["revolutions"], multiples)
+    numbers = given["highest"], given["samples"], given["revolutions"]
+    if any(type(one) is not int for one in (*numbers, *multiples)):
+        raise TypeError("harmonics must be whole numbers")
+    harmonics = Harmonics(*numbers, multiples)
     coefficients = np.array(content["coefficients"], dtype=float)
     if coefficients.ndim != 2 or len(coefficients) != harmonics.rows:
         raise ValueError(f"coefficients must have {harmonics.rows} rows")

@@ -128,6 +128,24 @@ def test_other_files_are_refused(path, text, reason):
         load_state(path, PAPER)
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"samples": 10**9},
+        {"samples": 64.0},
+        {"highest": 10**9},
+        {"revolutions": 10**9},
+        {"multiples": [0, 0.5, 1]},
+    ],
+    ids=str,
+)
+def test_harmonics_that_would_fill_the_memory_are_refused(change):
+    """A file with the right checksum may come from anybody."""
+    plain = to_plain(STATE)
+    with pytest.raises((ValueError, TypeError)):
+        from_plain({**plain, "harmonics": {**plain["harmonics"], **change}})
+
+
 def test_what_is_no_file_is_refused(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path, tmp_path / "pipe", Path(os.devnull), Path("/"), Path(".."), Path("")):
