@@ -29,6 +29,7 @@ from sfd_hbm_ros.response.curves.curve import (
 )
 from sfd_hbm_ros.response.curves.detached import detached_branches
 from sfd_hbm_ros.response.curves.summary import Summary
+from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.units import RPM
 
 
@@ -72,24 +73,26 @@ def run(chosen: argparse.Namespace) -> None:
         write_table(summary.curve, chosen.output)
     if chosen.picture:
         _draw(summary, chosen.picture)
-    data = data_of(
-        summary, None if chosen.vary is None else chosen.vary.partition("=")[0], seconds
-    )
+    data = data_of(summary, seconds)
     if chosen.json:
         print_json(data)
     else:
         print(text_of(data))
+    if not summary.anywhere_stable:
+        raise NoSolutionError(
+            "no response in the range is stable: the machine can stay on none of those found"
+        )
 
 
 def _draw(summary: Summary, path: str) -> None:
-    """The response of every damper above one another, with the jumps."""
+    """The response of every damper above one another, with its jumps and peaks."""
     from sfd_hbm_ros.report.curves import draw_response  # matplotlib takes its time to import
     from sfd_hbm_ros.report.style import new_figure, save
 
     dampers = summary.curve.dampers
     figure, axes = new_figure(rows=len(dampers), size=(6.3, 3.7 * len(dampers)), share_x=True)
     for one, damper in zip(axes, dampers, strict=True):
-        draw_response(one, summary.curve, damper, summary.jumps)
+        draw_response(one, summary.curve, damper, summary.jumps, summary.peaks)
         if len(dampers) > 1:
             one.set_title(damper)
     save(figure, path)

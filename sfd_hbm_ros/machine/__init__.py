@@ -20,7 +20,7 @@ from sfd_hbm_ros.machine.files import (
 )
 from sfd_hbm_ros.machine.model import Machine
 from sfd_hbm_ros.machine.parts import doubts
-from sfd_hbm_ros.machine.paths import get, override, override_all
+from sfd_hbm_ros.machine.paths import get, override, override_all, unit_of
 
 __all__ = [
     "FILM_MODELS",
@@ -41,5 +41,6 @@ __all__ = [
     "override",
     "override_all",
     "read_machine",
+    "unit_of",
     "write_machine",
 ]

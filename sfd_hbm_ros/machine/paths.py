@@ -15,7 +15,7 @@ from sfd_hbm_ros.machine.errors import MachineError, dotted, show_key, unknown
 from sfd_hbm_ros.machine.files import machine_from_dict, machine_to_dict
 from sfd_hbm_ros.machine.model import Machine
 from sfd_hbm_ros.machine.nested import item_label
-from sfd_hbm_ros.machine.parts import plain
+from sfd_hbm_ros.machine.parts import Part, plain
 
 
 def get(machine: Machine, path: str) -> Any:
@@ -30,6 +30,28 @@ def get(machine: Machine, path: str) -> Any:
     data["unbalance"] += _zero_unbalances(machine, path)
     container, key = _find(data, path)
     return container[key]
+
+
+def unit_of(machine: Machine, path: str) -> str:
+    """Return the SI unit of an entry of a machine by its dotted path; '' where it has none.
+
+    Raises
+    ------
+    MachineError
+        If there is no such entry; the sentence says which there are.
+    """
+    get(machine, path)  # says what there is
+    unbalances = [*machine.unbalance, *(Unbalance(name, 0.0) for name in machine.stations)]
+    entry: Any = machine
+    unit = ""
+    for label in path.split("."):
+        if isinstance(entry, Part):
+            unit, entry = entry.rules[label].unit, getattr(entry, label)
+            entry = unbalances if label == "unbalance" else entry
+        elif not unit:  # of parts; what has a unit is a vector or a matrix
+            labels = [item_label(vars(one), index) for index, one in enumerate(entry)]
+            entry = entry[labels.index(label)]
+    return unit
 
 
 def override(machine: Machine, path: str, value: Any) -> Machine:

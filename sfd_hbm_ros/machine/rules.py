@@ -64,6 +64,8 @@ class Rule:
         because fields without one follow.
     doubt : callable
         Returns what is odd about a value that is allowed, as it follows the key; '' if nothing is.
+    unit : str
+        SI unit of a number, or of those of a vector or matrix; '' where it has none.
     """
 
     about: str
@@ -73,6 +75,7 @@ class Rule:
     read: Callable[[Any, str, Any], Any] = lambda data, key, materials: data
     default: object = REQUIRED
     doubt: Callable[[Any], str] = lambda value: ""
+    unit: str = ""
 
 
 def number(
@@ -119,7 +122,9 @@ def number(
             question = "is it in that unit?"
         return f"is {x:g} {unit}, where {least_usual:g} to {most_usual:g} are usual: {question}"
 
-    return Rule(about, f"{allowed} {words}".rstrip(), convert, default=default, doubt=doubt)
+    return Rule(
+        about, f"{allowed} {words}".rstrip(), convert, default=default, doubt=doubt, unit=unit
+    )
 
 
 def integer(about: str, *, least: int) -> Rule:

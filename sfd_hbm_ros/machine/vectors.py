@@ -19,7 +19,7 @@ def pair(about: str, unit: str) -> Rule:
         x, y = _sequence(value)
         return component.convert(x), component.convert(y)
 
-    return Rule(about, f"[x, y], each {component.allowed}", convert, plain=list)
+    return Rule(about, f"[x, y], each {component.allowed}", convert, plain=list, unit=unit)
 
 
 def matrix(about: str, direct: Rule) -> Rule:
@@ -44,7 +44,7 @@ def matrix(about: str, direct: Rule) -> Rule:
         return direct.doubt(xx) or direct.doubt(yy)
 
     allowed = f"{direct.allowed}, or a matrix [[xx, xy], [yx, yy]] whose xx and yy are such"
-    return Rule(about, allowed, convert, plain, doubt=doubt)
+    return Rule(about, allowed, convert, plain, doubt=doubt, unit=direct.unit)
 
 
 def _sequence(value: object) -> list[Any] | tuple[Any, ...]:

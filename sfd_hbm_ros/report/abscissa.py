@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from sfd_hbm_ros.hbm.family import ParameterFamily
+from sfd_hbm_ros.machine import unit_of
 from sfd_hbm_ros.report.units import grouped
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.units import RPM
@@ -16,14 +17,20 @@ class Abscissa:
     ----------
     path : str or None
         Dotted path of the entry; None for the speed.
+    symbol : str
+        Symbol of the unit for people, '' for none.
     """
 
     path: str | None
+    symbol: str = "rpm"
 
     @classmethod
     def of(cls, curve: ResponseCurve) -> "Abscissa":
         """That of a curve."""
-        return cls(curve.family.path if isinstance(curve.family, ParameterFamily) else None)
+        if not isinstance(curve.family, ParameterFamily):
+            return cls(None)
+        path = curve.family.path
+        return cls(path, unit_of(curve.balance.machine, path))
 
     @property
     def unit(self) -> float:
@@ -33,10 +40,10 @@ class Abscissa:
     @property
     def title(self) -> str:
         """What it is, with its unit."""
-        return "speed [rpm]" if self.path is None else f"{self.path} [SI unit]"
+        return f"{self.path or 'speed'} [{self.symbol or '-'}]"
 
     def worded(self, value: float) -> str:
         """A value of a curve, for people."""
         if self.path is None:
             return f"{grouped(round(value / RPM, 1))} rpm"
-        return f"{value:.4g}"
+        return f"{value:.4g} {self.symbol}".rstrip()

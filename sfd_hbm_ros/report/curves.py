@@ -22,6 +22,7 @@ from sfd_hbm_ros.report.style import (
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.judged import CurveBranch
 from sfd_hbm_ros.response.curves.jumps import Jump
+from sfd_hbm_ros.response.curves.peaks import Peak
 
 _MARKERS = {
     Instability.FOLD: "o",
@@ -32,7 +33,11 @@ _MARKERS = {
 
 
 def draw_response(
-    axes: Axes, curve: ResponseCurve, damper: str, jumps: Iterable[Jump] = ()
+    axes: Axes,
+    curve: ResponseCurve,
+    damper: str,
+    jumps: Iterable[Jump] = (),
+    peaks: Iterable[Peak] = (),
 ) -> None:
     """Draw one response curve: stable solid, unstable dashed, losses of stability marked.
 
@@ -46,13 +51,16 @@ def draw_response(
         The damper whose eccentricity is drawn.
     jumps : iterable of Jump, optional
         Jumps of the curve, drawn as arrows.
+    peaks : iterable of Peak, optional
+        Peaks of vibrations, of which those of this damper are marked.
     """
     abscissa = Abscissa.of(curve)
     _draw(axes, curve, damper, abscissa, INK)
     arrows = draw_jumps(axes, jumps, damper, abscissa)
+    stars = [_star(axes, peak, abscissa) for peak in peaks if peak.of == damper]
     label_abscissa(axes, abscissa.title)
     label_eccentricity(axes)
-    keys = [*_keys(curve.every_branch, INK), *arrows]
+    keys = [*_keys(curve.every_branch, INK), *arrows, *stars]
     if keys:
         legend(axes, keys)
 
@@ -87,6 +95,14 @@ def _draw(axes: Axes, curve: ResponseCurve, damper: str, abscissa: Abscissa, col
         draw_branch(axes, branch, place, eccentricity, colour)
         for i, kind in losses(branch):
             axes.plot(place[i], eccentricity[i], **_mark(kind, colour))
+
+
+def _star(axes: Axes, peak: Peak, abscissa: Abscissa) -> Line2D:
+    """Mark a peak where its response lies, and return its key for the legend."""
+    style: dict[str, Any] = {"linestyle": "none", "marker": "*", "markersize": 8.0, "color": INK}
+    height = peak.response.journals[peak.of].eccentricity_max
+    axes.plot(peak.value / abscissa.unit, height, **style)
+    return Line2D([], [], label=f"peak, {abscissa.worded(peak.value)}", **style)
 
 
 def _keys(branches: Sequence[CurveBranch], colour: str) -> list[Line2D]:

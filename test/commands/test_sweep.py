@@ -12,8 +12,17 @@ import pytest
 from sfd_hbm_ros.cli import main
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.hbm.points import Stop
-from sfd_hbm_ros.machine import override, read_machine
+from sfd_hbm_ros.machine import (
+    machine_from_dict,
+    override,
+    override_all,
+    read_machine,
+    write_machine,
+)
 from sfd_hbm_ros.response.curves.curve import response_curve
+from sfd_hbm_ros.response.curves.jumps import solutions_at
+
+from ..hbm.machines import random_machine
 
 PAPER = str(Path(__file__).parents[2] / "config" / "paper_rotor.yaml")
 RPM = np.pi / 30.0
@@ -21,6 +30,66 @@ VISCOSITY = "dampers.damper_1.viscosity"
 HEAVY = "unbalance.disk_2.magnitude=5.039e-4"
 DISK_1 = {"unbalance.disk_2.station": "disk_1", "unbalance.disk_2.magnitude": "5.039e-4"}
 OPTIONS = [word for path, value in DISK_1.items() for word in ("--set", f"{path}={value}")]
+
+#: A rotor whose main branch has a step too small to see, 7 rpm below its hysteresis.
+TINY_JUMP = {
+    "name": "tiny jump",
+    "materials": {
+        "steel": {"youngs_modulus": 207000000000.0, "density": 7833.0, "poisson_ratio": 0.3}
+    },
+    "shaft": [
+        {
+            "elements": 20,
+            "length": 0.0287974847,
+            "outer_diameter": 0.031836797,
+            "inner_diameter": 0.0,
+            "material": "steel",
+        }
+    ],
+    "disks": [
+        {
+            "name": "disk_1",
+            "node": 6,
+            "mass": 5.02632146,
+            "polar_inertia": 0.009,
+            "diametral_inertia": 0.005,
+        },
+        {
+            "name": "disk_2",
+            "node": 8,
+            "mass": 3.062508,
+            "polar_inertia": 0.009,
+            "diametral_inertia": 0.005,
+        },
+        {
+            "name": "disk_3",
+            "node": 9,
+            "mass": 4.74507501,
+            "polar_inertia": 0.009,
+            "diametral_inertia": 0.005,
+        },
+    ],
+    "bearings": [{"name": "bearing_1", "node": 0, "stiffness": 105000000.0, "damping": 0.0}],
+    "dampers": [
+        {
+            "name": "damper_1",
+            "node": 20,
+            "bearing_stiffness": 105000000.0,
+            "bearing_damping": 0.0,
+            "journal_mass": 1.52609033,
+            "centering_stiffness": 637839.741,
+            "diameter": 0.0762,
+            "length": 0.0254,
+            "clearance": 0.000187552458,
+            "viscosity": 0.0284480772,
+            "density": 865.0,
+            "film": {"model": "short", "cavitation": True, "inertia": True},
+        }
+    ],
+    "unbalance": [{"station": "disk_3", "magnitude": 0.000777400714, "phase": 0.0}],
+    "loads": [],
+    "gravity": False,
+}
 
 
 @pytest.fixture(scope="module")
@@ -167,12 +236,160 @@ def test_sub_harmonics_are_let_in(tmp_path, capsys):
     assert max(abs(float(row["damper_1.x_1/2_cos"])) for row in rows) < 1e-12
 
 
+def sweep(capsys, machine, *options):
+    """What a sweep prints, read from JSON, and its exit status."""
+    status = main(["sweep", str(machine), *options, "--json"])
+    out, err = capsys.readouterr()
+    return json.loads(out), status, err
+
+
 def test_text_for_people(capsys):
     assert main(["sweep", PAPER, "--rpm", "3900:4100", "--harmonics", "1", *OPTIONS]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert "points in" in lines[0]
-    assert sum(line.startswith("fold ") for line in lines) == 2
-    assert sum(line.startswith("jump ") for line in lines) == 2
+    folds, jumps, widths = (
+        [line for line in lines if line.startswith(word)]
+        for word in ("fold ", "jump ", "hysteresis ")
+    )
+    assert len(folds) == len(jumps) == 2
+    assert all("eccentricity of damper_1 0." in line for line in (*folds, *jumps))
+    [width] = widths
+    assert float(width.split()[1]) == pytest.approx(36.97, abs=0.1)
+    assert width.endswith(" rpm wide")
+    [greatest] = [line for line in lines if line.startswith("greatest vibration of any disk")]
+    assert " zero to peak: disk_" in greatest
+
+
+def test_disks_move_while_the_journal_locks(capsys):
+    """As the film locks, the rotor meets its pinned critical speed."""
+    read, _, _ = sweep(capsys, PAPER, "--rpm", "3900:4170", "--harmonics", "1", "--set", HEAVY)
+    [down] = [one for one in read["jumps"] if one["direction"] == "coast_down"]
+    assert down["eccentricity_to"] == pytest.approx(0.78, abs=0.01)
+    assert down["greatest_vibration_to"]["of"] == "disk_2"
+    machine = override(read_machine(PAPER), "unbalance.disk_2.magnitude", 5.039e-4)
+    balance = HarmonicBalance(machine, Harmonics(1))
+    curve = response_curve(balance, 3900 * RPM, 4170 * RPM)
+    _, landing = next(solutions_at(curve.branches[0], down["speed_rpm"] * RPM))
+    amplitudes = balance.response(landing)[1, balance.model.stations["disk_2"]]
+    expected = float(np.abs(amplitudes[0]))  # a circle
+    assert down["greatest_vibration_to"]["vibration"] == pytest.approx(expected, rel=1e-6)
+    assert expected > 1e-3
+    assert read["greatest_vibration"]["vibration"] > 10.0 * expected
+    assert read["greatest_vibration"]["eccentricity"] < 1.0
+
+
+def test_peaks_name_what_they_are_of(capsys):
+    light = ["--set", "unbalance.disk_2.magnitude=2e-4", "--harmonics", "1"]
+    read, _, _ = sweep(capsys, PAPER, "--rpm", "3300:4300", *light)
+    of = [one["of"] for one in read["peaks"]]
+    assert sorted(of) == ["damper_1", "disk_1", "disk_2", "disk_3"]
+    assert read["peak"]["at"] == "peak"
+    assert read["peak"]["damper"] == of[0] == "damper_1"
+    assert read["peak"]["speed_rpm"] == read["peaks"][0]["speed_rpm"]
+    assert read["amplification_factor"] == read["peaks"][0]["amplification_factor"]
+    # without gravity the orbit is a circle about the centre
+    assert read["peak"]["vibration"] == pytest.approx(2.54e-4 * read["peak"]["eccentricity"])
+
+
+def two_dampers(folder):
+    """A rotor between two different dampers, which jumps."""
+    heavy = random_machine(5, dampers=2)
+    changes = {
+        "unbalance.disk_1.magnitude": 9e-4,
+        "unbalance.disk_2.magnitude": 9e-4,
+        "dampers.damper_2.viscosity": 0.005,
+    }
+    path = folder / "two.yaml"
+    write_machine(override_all(heavy, changes), path)
+    return path
+
+
+def test_every_damper_is_in_a_jump(tmp_path, capsys):
+    """What a jump says of each damper is what the responses beside it have."""
+    machine = two_dampers(tmp_path)
+    read, _, _ = sweep(capsys, machine, "--rpm", "3000:9000", "--harmonics", "1")
+    assert read["jumps"]
+    for jump in read["jumps"]:
+        assert set(jump["dampers"]) == {"damper_1", "damper_2"}
+        changes = {
+            name: abs(one["eccentricity_to"] - one["eccentricity_from"])
+            for name, one in jump["dampers"].items()
+        }
+        assert changes[jump["damper"]] == max(changes.values())
+        assert jump["eccentricity_from"] == max(
+            one["eccentricity_from"] for one in jump["dampers"].values()
+        )
+    for fold in read["folds"]:
+        assert fold["eccentricity"] == fold["dampers"][fold["damper"]]["eccentricity"]
+    assert main(["sweep", str(machine), "--rpm", "3000:9000", "--harmonics", "1"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    for line in lines:
+        if line.startswith(("jump ", "fold ")):
+            assert "of damper_1 " in line
+            assert "of damper_2 " in line
+
+
+def test_detached_branches_have_their_folds_and_jumps(capsys):
+    """From the paper's locked rotor a machine falls back onto its run-up at either end."""
+    options = ["--rpm", "4000:4300", "--harmonics", "1", "--detached"]
+    read, _, _ = sweep(capsys, PAPER, *options)
+    [detached] = read["detached"]
+    assert read["jumps"] == []
+    assert [one["direction"] for one in detached["jumps"]] == ["run_up", "coast_down"]
+    for jump in detached["jumps"]:
+        assert jump["eccentricity_from"] > 0.9
+        assert jump["eccentricity_to"] < 0.35
+    assert detached["folds"][0]["speed_rpm"] == pytest.approx(detached["jumps"][1]["speed_rpm"])
+    assert main(["sweep", PAPER, *options]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any(line.startswith("  fold ") for line in lines)
+    assert sum(line.startswith("  jump ") for line in lines) == 2
+
+
+def test_jumps_too_small_to_see_are_apart(tmp_path, capsys):
+    """One of 0.004 of the clearance and 0.04 rpm stood for a hysteresis of 6 rpm (D6)."""
+    path = tmp_path / "tiny.yaml"
+    write_machine(machine_from_dict(TINY_JUMP), path)
+    read, _, _ = sweep(capsys, path, "--rpm", "4200:4400", "--harmonics", "7")
+    assert read["hysteresis"] == pytest.approx(6.0, abs=0.1)
+    [down] = [one for one in read["jumps"] if one["direction"] == "coast_down"]
+    assert down["speed_rpm"] == pytest.approx(4311.68, abs=0.05)
+    for jump in read["jumps"]:
+        assert abs(jump["eccentricity_to"] - jump["eccentricity_from"]) > 0.01
+    assert {one["direction"] for one in read["tiny_jumps"]} == {"run_up", "coast_down"}
+    for jump in read["tiny_jumps"]:
+        assert abs(jump["eccentricity_to"] - jump["eccentricity_from"]) < 0.01
+
+
+def test_an_entry_has_its_unit_and_no_run_up(tmp_path, capsys):
+    """A jump in the unbalance at a speed between the folds."""
+    vary = ["--vary", "unbalance.disk_2.magnitude=3e-4:6e-4", "--harmonics", "1"]
+    assert main(["sweep", PAPER, "--rpm", "4000", *vary]) == 0
+    text = capsys.readouterr().out
+    assert "run-up" not in text
+    assert "coast-down" not in text
+    assert "amplification" not in text
+    assert "upwards in unbalance.disk_2.magnitude, eccentricity of damper_1 0." in text
+    assert "downwards in unbalance.disk_2.magnitude, eccentricity of damper_1 0." in text
+    [width] = [line for line in text.splitlines() if line.startswith("hysteresis ")]
+    assert width.endswith(" kg m wide")
+    read, _, _ = sweep(capsys, PAPER, "--rpm", "4000", *vary)
+    assert read["amplification_factor"] is None
+    assert [one["direction"] for one in read["jumps"]] == ["upwards", "downwards"]
+    assert read["varies"] == {"key": "unbalance.disk_2.magnitude", "unit": "kg m"}
+
+
+def test_a_rotor_that_is_nowhere_stable_says_so(tmp_path, capsys):
+    """A bearing whose cross stiffness drives the whirl faster than the film damps it."""
+    matrix = "[[1.05e8, 6e7], [-6e7, 1.05e8]]"
+    options = ["--rpm", "3000:3100", "--harmonics", "1", "--set"]
+    read, status, err = sweep(capsys, PAPER, *options, f"bearings.bearing_1.stiffness={matrix}")
+    assert status == 1
+    assert err.startswith("sfd_hbm: no response in the range is stable")
+    assert err.count("\n") == 1
+    assert read["stable_anywhere"] is False
+    assert read["peak"]["eccentricity"] is None
+    assert read["points"] > 2
 
 
 @pytest.mark.parametrize(

@@ -135,10 +135,10 @@ def test_an_entry_of_the_machine_file(axes):
     first, last = branch.solutions[0], branch.solutions[-1]
     made_up = [Jump(direction, branch.values[0], first, last) for direction in Direction]
     draw_response(axes, curve, DAMPER, made_up)
-    assert axes.get_xlabel() == f"{UNBALANCE} [SI unit]"
+    assert axes.get_xlabel() == f"{UNBALANCE} [kg m]"
     points = reading.knots(reading.curves(axes)[0])
     assert np.allclose(points[:, 0], branch.values, rtol=1e-12)
-    assert reading.legend(axes) == ["jump on rising, 0.0001", "jump on falling, 0.0001"]
+    assert reading.legend(axes) == ["jump on rising, 0.0001 kg m", "jump on falling, 0.0001 kg m"]
 
 
 def test_study(axes):

@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from itertools import pairwise
 
 from sfd_hbm_ros.hbm import NewtonOptions
 from sfd_hbm_ros.hbm.corrector import ROUNDING
@@ -48,6 +49,15 @@ class Jump:
     before: Response
     after: Response
 
+    @property
+    def damper(self) -> str:
+        """The damper whose eccentricity changes most."""
+        changes = {
+            name: abs(motion.eccentricity_max - self.after.journals[name].eccentricity_max)
+            for name, motion in self.before.journals.items()
+        }
+        return max(changes, key=lambda name: changes[name])
+
 
 def leaps(curve: ResponseCurve, direction: Direction) -> list[Leg]:
     """Legs that end with a jump, of the journey through the whole range in one direction."""
@@ -60,11 +70,31 @@ def jumps(curve: ResponseCurve, direction: Direction) -> list[Jump]:
 
     The way is that of `journey.travel`; its responses are converged.
     """
-    return [
-        Jump(direction, end.value, end.nearest, response_on(landing) or landing.nearest)
-        for end, _, landing in leaps(curve, direction)
-        if landing is not None
-    ]
+    return [jump_of(leap, direction) for leap in leaps(curve, direction)]
+
+
+def jump_of(leap: Leg, direction: Direction) -> Jump:
+    """The jump with which a leg ends, its responses converged."""
+    end, _, landing = leap
+    assert landing is not None
+    return Jump(direction, end.value, end.nearest, response_on(landing) or landing.nearest)
+
+
+def leaps_from(curve: ResponseCurve, branch: CurveBranch, direction: Direction) -> list[Leg]:
+    """Legs that end with the first jump of a machine on a detached branch, each once.
+
+    It may land on any other branch, a detached one among them.
+    """
+    whole = replace(curve, branches=curve.every_branch, detached=())
+    stable = [None in pair for pair in pairwise(branch.instability)]
+    found: list[Leg] = []
+    for index, here in enumerate(stable):
+        if here and not (index and stable[index - 1]):
+            middle = float(branch.values[index : index + 2].mean())
+            leg = next(legs(whole, Place(branch, index, middle), direction.end))
+            if leg.landing is not None and not any(leg.end.is_at(one.end) for one in found):
+                found.append(leg)
+    return found
 
 
 def solutions_at(branch: CurveBranch, value: float) -> Iterator[tuple[int, Response]]:
