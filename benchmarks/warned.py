@@ -80,10 +80,8 @@ def warnings(case: Run, until: float, rng: np.random.Generator, wrong: float = 0
         if excursion.away:  # as the predictor does, which believes no such speed at once
             continue
         place = travel(case.curve, place, speed).place if place else None
-        acceleration = estimator.acceleration
-        outlook = (
-            ahead.outlook(place, acceleration) if place else unknown_outlook(speed, acceleration)
-        )
+        course = estimator.acceleration, estimator.settled
+        outlook = ahead.outlook(place, *course) if place else unknown_outlook(speed, course[0])
         alarm.update(outlook, place.eccentricity if place else np.nan, now)
         if (alarm.level(now) is Level.WARN) != len(found) % 2:
             found.append(now)

@@ -7,6 +7,7 @@ from sfd_hbm_ros.response.tracking.tracked import BranchName
 from sfd_hbm_ros.response.warning.advice import advice
 from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
 from sfd_hbm_ros.response.warning.outlook import Outlook
+from sfd_hbm_ros.response.warning.rounding import Rounding
 from sfd_hbm_ros.units import RPM
 
 
@@ -17,6 +18,7 @@ def jump_status(
     eccentricity: float,
     model_age: float,
     now: float,
+    rounding: Rounding | None = None,
 ) -> Status:
     """Return the warning; +inf stands for none ahead, NaN for not computable (REP 117).
 
@@ -34,6 +36,8 @@ def jump_status(
         Time since the response curve was that of the machine as it is [s]; 0 while it is.
     now : float
         Time by the alarm's clock [s].
+    rounding : Rounding, optional
+        What rounds the numbers of the sentence.
     """
     leading, ahead = alarm.leading, outlook.next
     values = {
@@ -41,6 +45,7 @@ def jump_status(
         "bistable": "unknown" if outlook.bistable is None else str(outlook.bistable).lower(),
         "next_jump": str(ahead.direction),
         "next_jump_rpm": _number(ahead.speed / RPM),
+        "next_jump_damper": ahead.leading.damper,
         "margin_rpm": _number(outlook.margin / RPM),
         "margin_percent": _number(100.0 * outlook.relative_margin),
         "time_to_jump_s": _number(outlook.time_to_jump),
@@ -48,14 +53,24 @@ def jump_status(
         "eccentricity_after": _number(ahead.eccentricity_after),
         "run_up_jump_rpm": _number(outlook.run_up.speed / RPM),
         "coast_down_jump_rpm": _number(outlook.coast_down.speed / RPM),
+        "possible": "; ".join(_possible(one) for one in (outlook, *outlook.others))
+        if outlook.others
+        else "",
         "alarm": str(alarm.state(now)),
         "held_by": "; ".join(str(cause) for cause in alarm.causes(now)),
         "since_s": _number(now - leading.since),
         "occurrences": str(leading.occurrences),
         "model_age_s": _number(model_age),
     }
-    sentence = advice(alarm, outlook, eccentricity, now)
+    sentence = advice(alarm, outlook, eccentricity, now, rounding)
     return Status("Jump", alarm.level(now), sentence, values)
+
+
+def _possible(outlook: Outlook) -> str:
+    """Return a response that the machine may be on, and its jumps."""
+    up, down = (_number(jump.speed / RPM) for jump in (outlook.run_up, outlook.coast_down))
+    eccentricity = _number(outlook.eccentricity)
+    return f"eccentricity {eccentricity}, run_up jump at {up} rpm, coast_down jump at {down} rpm"
 
 
 def _number(value: float) -> str:

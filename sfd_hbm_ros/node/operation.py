@@ -86,6 +86,11 @@ class Operation:
         return self._estimator.acceleration
 
     @property
+    def settled(self) -> bool:
+        """Whether the acceleration has settled since a start or a reversal."""
+        return self._estimator.settled
+
+    @property
     def silence(self) -> str:
         """Why nothing is predicted now, in words; empty if something is."""
         if not self.active:

@@ -21,8 +21,10 @@ from sfd_hbm_ros.node.messages import common as messages
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.response.tracking.tracked import BranchName, Tracked
 from sfd_hbm_ros.response.warning.jump_alarm import Answer, JumpAlarm
+from sfd_hbm_ros.response.warning.limits import Approach
 from sfd_hbm_ros.response.warning.outlook import Outlook, unknown_outlook
-from sfd_hbm_ros.response.warning.settings import AlarmSettings
+from sfd_hbm_ros.response.warning.rounding import Rounding
+from sfd_hbm_ros.response.warning.settings import AlarmSettings, Level
 
 _LOOK = 0.1  # s between two looks at the alarm while nothing is predicted
 _REPEAT = 1.0  # s after which the warning is published without a change
@@ -63,6 +65,8 @@ class Watch:
         self._operation = operation
         self._curves = curves
         self._hardware = hardware
+        self._rounding = Rounding()
+        self._approach = Approach()
         self._published: tuple[object, ...] = ()
         self._published_at = -math.inf
         # With its namespace, so that several machines on one graph are told apart.
@@ -88,12 +92,19 @@ class Watch:
     def release(self) -> None:
         """Forget the alarm together with the machine."""
         self.alarm = JumpAlarm(self.alarm.settings)
+        self._approach = Approach()
 
     def look(self) -> None:
         """Have the alarm take what lies ahead, and publish what has changed."""
         now = time.monotonic()
         tracked = self._tracked()
-        self.alarm.update(self._outlook(tracked), _eccentricity(tracked), now)
+        outlook = self._outlook(tracked)
+        reported = self.alarm.alarms[Level.ERROR].present
+        settings = self._approach.fitted(
+            self.alarm.settings, outlook.time_to_jump, reported=reported
+        )
+        eccentricity = _greatest(outlook, _eccentricity(tracked))
+        self.alarm.update(outlook, eccentricity, now, settings=settings)
         signature = *self.signature, self._branch(tracked), self._curves.usable
         if signature != self._published:
             for call in self.after_change:
@@ -111,7 +122,7 @@ class Watch:
         """Return the warning."""
         tracked = self._tracked()
         outlook, branch, age = self._outlook(tracked), self._branch(tracked), self._curves.age
-        given = _eccentricity(tracked), age, time.monotonic()
+        given = _eccentricity(tracked), age, time.monotonic(), self._rounding
         status = jump_status(self.alarm, outlook, branch, *given)
         return replace(status, message=status.message + self._reservation(age))
 
@@ -125,7 +136,8 @@ class Watch:
         if math.isnan(age):
             return "; there is no response curve yet"
         use = "still used" if self._curves.usable else "of no use any more"
-        return f"; the response curve is outdated by {age:.1f} s and {use}" if age else ""
+        since = self._rounding.within_time("age", age)
+        return f"; the response curve has been outdated for {since} and is {use}" if age else ""
 
     def _tracked(self) -> Tracked | None:
         """The operating point; None while it is not known."""
@@ -136,14 +148,17 @@ class Watch:
         return tracked.branch if tracked else BranchName.UNKNOWN
 
     def _outlook(self, tracked: Tracked | None) -> Outlook:
-        """What lies ahead; unknown where the curve or the branch is."""
-        acceleration, jumps = self._operation.acceleration, self._curves.jumps
-        speed = tracked.solution.speed if tracked else math.nan
+        """What lies ahead; unknown where no curve tells.
+
+        Where the branch is not known, that of every response on which the machine may be.
+        """
+        course = self._operation.acceleration, self._operation.settled
+        jumps, speed = self._curves.jumps, tracked.solution.speed if tracked else math.nan
         if jumps is None or tracked is None or tracked.place is None:
-            return unknown_outlook(speed, acceleration)
+            return unknown_outlook(speed, course[0])
         if tracked.branch is BranchName.UNKNOWN:
-            return unknown_outlook(speed, acceleration)
-        return jumps.outlook(tracked.place, acceleration)
+            return jumps.outlook_of_any(speed, *course)
+        return jumps.outlook(tracked.place, *course)
 
     def _acknowledge(self, _: Any, response: Trigger.Response) -> Trigger.Response:
         return self._answered(response, self.alarm.acknowledge())
@@ -167,3 +182,9 @@ class Watch:
 def _eccentricity(tracked: Tracked | None) -> float:
     """Greatest eccentricity of any damper; NaN where it is not known."""
     return tracked.solution.eccentricity_max if tracked else math.nan
+
+
+def _greatest(outlook: Outlook, eccentricity: float) -> float:
+    """Greatest eccentricity that the machine may have, where its response is not known."""
+    possible = (outlook, *outlook.others) if outlook.others else ()
+    return max([eccentricity, *(one.eccentricity for one in possible)])

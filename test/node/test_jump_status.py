@@ -35,6 +35,7 @@ def test_a_jump_ahead():
         "bistable": "true",
         "next_jump": "run_up",
         "next_jump_rpm": "4000",
+        "next_jump_damper": "",
         "margin_rpm": "50",
         "margin_percent": "1.26582",
         "time_to_jump_s": "25",
@@ -42,6 +43,7 @@ def test_a_jump_ahead():
         "eccentricity_after": "0.2",
         "run_up_jump_rpm": "4000",
         "coast_down_jump_rpm": "3900",
+        "possible": "",
         "alarm": "active, unacknowledged",
         "since_s": "2.5",
         "held_by": "margin to the jump 50 rpm, limit 100 rpm, beyond the limit; "

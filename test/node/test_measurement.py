@@ -55,6 +55,13 @@ def test_the_first_orbit_settles_the_branch(predictor, measured):
     on_lower = assumed == pytest.approx(lower, abs=1e-8)
     assert on_lower or assumed == pytest.approx(upper, abs=1e-8)
     assert branch_name(predictor) == "unknown"
+    # jumps lie some 19 rpm above and below, which both are within the limit of an error
+    both = predictor.until_warning(b"\x02", "on which of 2 responses the machine is", BOTH)
+    message = predictor.warnings[-1][1].message
+    for part in ("up to eccentricity", "down to eccentricity", "~/measured would settle it"):
+        assert part in message
+    assert 15.0 < float(both["margin_rpm"]) < 20.0
+    assert both["next_jump_damper"] == "damper_1"
     report(measured, orbit(UPPER_ONLY if on_lower else LOWER_ONLY))
     assert branch(predictor) == pytest.approx(upper if on_lower else lower, abs=1e-8)
     name = "upper" if on_lower else "lower"

@@ -27,6 +27,9 @@ _BINS = 32  # of a window that is full
 _FEWEST = 5  # bins before a slope means anything
 _KEPT = 8  # bins that are kept however old they are, so that three may be wrong at any rate
 _KNOWN = 0.25  # part of the window that must be seen before the slope is told
+_CALM = 0.25  # part of the window for which a slope must last before it has settled
+_FEW = 3  # slopes, in that part at least
+_CHANGE = 0.25  # part of itself by which a slope that has settled may change meanwhile
 
 
 @dataclass
@@ -91,6 +94,7 @@ class AccelerationEstimator:
         self._bins: deque[_Bin] = deque()
         self._last = 0
         self._slope = math.nan
+        self._slopes: deque[tuple[int, float]] = deque()  # the last ones, with their stamps
         self._steady = True
 
     def add(self, stamp: int, speed: float) -> None:
@@ -118,6 +122,20 @@ class AccelerationEstimator:
         """Angular acceleration [rad/s2]; 0 for a steady speed, NaN while it is unknown."""
         return 0.0 if self._steady and math.isfinite(self._slope) else self._slope
 
+    @property
+    def settled(self) -> bool:
+        """Whether the acceleration has not changed much for a quarter of the window.
+
+        While another one is taken over, after a start or a reversal, what is told of it lies
+        somewhere between both.
+        """
+        slopes = [slope for _, slope in self._slopes]
+        if len(slopes) < _FEW or not math.isfinite(self._slope):
+            return False
+        lasting = (self._slopes[-1][0] - self._slopes[0][0]) * _SECOND >= _CALM * self._window
+        allowed = _CHANGE * abs(self._slope) + self._resolution
+        return lasting and max(slopes) - min(slopes) <= allowed
+
     def _age(self, one: _Bin) -> float:
         """Time from the first speed of a bin to the last of all [s]."""
         return (self._last - one.begin) * _SECOND
@@ -128,6 +146,11 @@ class AccelerationEstimator:
             return
         times = np.array([one.age - self._age(one) for one in self._bins])
         self._slope = _repeated_median(times, np.array([one.speed for one in self._bins]))
+        self._slopes.append((self._last, self._slope))
+        while len(self._slopes) > _FEW and (
+            (self._last - self._slopes[1][0]) * _SECOND >= _CALM * self._window
+        ):
+            self._slopes.popleft()
         bound = self._resolution if self._steady else 0.5 * self._resolution
         self._steady = abs(self._slope) <= bound
 

@@ -7,6 +7,7 @@ from sfd_hbm_ros.response.warning.alarm import AlarmState
 from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
 from sfd_hbm_ros.response.warning.limits import Cause, Side
 from sfd_hbm_ros.response.warning.outlook import JumpAhead, Outlook
+from sfd_hbm_ros.response.warning.rounding import Rounding
 from sfd_hbm_ros.response.warning.settings import Level
 from sfd_hbm_ros.units import RPM
 
@@ -19,7 +20,13 @@ _STANDING = {
 }
 
 
-def advice(alarm: JumpAlarm, outlook: Outlook, eccentricity: float, now: float) -> str:
+def advice(
+    alarm: JumpAlarm,
+    outlook: Outlook,
+    eccentricity: float,
+    now: float,
+    rounding: Rounding | None = None,
+) -> str:
     """Return the sentence.
 
     Parameters
@@ -32,57 +39,99 @@ def advice(alarm: JumpAlarm, outlook: Outlook, eccentricity: float, now: float) 
         Greatest eccentricity of any damper at present; NaN if unknown.
     now : float
         Time by the alarm's clock [s].
+    rounding : Rounding, optional
+        What rounds the numbers, and has rounded those of the sentences before.
     """
+    rounding = rounding or Rounding()
+    ahead = _about_responses if outlook.others else _about_one
+    parts = (
+        ahead(alarm, outlook, eccentricity, now, rounding),
+        _about_level(alarm, now, rounding),
+        _about_alarm(alarm, now, rounding),
+    )
+    return "".join(parts)
+
+
+def _about_one(
+    alarm: JumpAlarm, outlook: Outlook, eccentricity: float, now: float, rounding: Rounding
+) -> str:
+    """What lies ahead of a machine whose response is known, or of which nothing is."""
     limit = alarm.settings.threshold("eccentricity_{}", Level.WARN)
-    near = f"Film near lock-up at eccentricity {eccentricity:.2f}. "
-    lock_up = near if 0.0 < limit < eccentricity else ""
-    passed = alarm.held_for(now) > 0.0 and not lock_up
+    lock_up = 0.0 < limit < eccentricity
+    shown = rounding.nearest("eccentricity", eccentricity, 0.01) if lock_up else math.nan
+    near = f"Film near lock-up at eccentricity {shown:.2f}. " if lock_up else ""
+    jump = outlook.next
+    if math.isinf(jump.speed):
+        passed = alarm.held_for(now) > 0.0 and not lock_up
+        other = "; another stable response exists at this speed" if outlook.bistable else ""
+        return f"{near}No jump ahead{' any more' if passed else ''}{other}"
+    if math.isnan(jump.speed):
+        return f"{near}It is not known whether a jump lies ahead"
+    return near + _about_jump(outlook, "", rounding)
+
+
+def _about_responses(
+    alarm: JumpAlarm, outlook: Outlook, eccentricity: float, now: float, rounding: Rounding
+) -> str:
+    """What lies ahead of a machine that may be on one response or another."""
+    outlooks = outlook, *outlook.others
+    parts = []
+    for number, one in enumerate(sorted(outlooks, key=lambda one: one.eccentricity)):
+        key = f"{number} of {len(outlooks)} "
+        shown = rounding.nearest(f"{key}eccentricity", one.eccentricity, 0.01)
+        jump = one.next
+        if math.isinf(jump.speed):
+            then = "no jump ahead"
+        elif math.isnan(jump.speed):
+            then = "it is not known whether a jump lies ahead"
+        else:
+            then = _about_jump(one, key, rounding)
+            then = then[0].lower() + then[1:]
+        parts.append(f"at eccentricity {shown:.2f}, {then}")
     return (
-        lock_up
-        + _about_jump(outlook, passed)
-        + _about_level(alarm, now)
-        + _about_alarm(alarm, now)
+        f"It is not known on which of {len(outlooks)} responses the machine is: either "
+        f"{', or '.join(parts)}; an orbit on ~/measured would settle it"
     )
 
 
-def _about_jump(outlook: Outlook, passed: bool) -> str:
-    """What lies ahead; `passed` where an alarm that was raised by a jump is active yet."""
-    jump = outlook.next
-    if math.isnan(jump.speed):
-        return "It is not known whether a jump lies ahead"
-    other = "; another stable response exists at this speed" if outlook.bistable else ""
-    if math.isinf(jump.speed):
-        return f"No jump ahead{' any more' if passed else ''}{other}"
-    rpm, percent = outlook.margin / RPM, 100.0 * outlook.relative_margin
-    distance = f"{rpm:.0f} rpm ({percent:.1f} %)"
-    return f"{_landing(jump)} expected at {jump.speed / RPM:.0f} rpm, {distance} " + _way(outlook)
+def _about_jump(outlook: Outlook, key: str, rounding: Rounding) -> str:
+    """A jump that is expected: of what, where to and when."""
+    speed = rounding.rpm(f"{key}speed", outlook.next.speed / RPM)
+    distance = rounding.within_rpm(f"{key}margin", outlook.margin / RPM)
+    way = _way(outlook, key, rounding)
+    return f"{_landing(outlook.next, key, rounding)} expected at {speed}, {distance} {way}"
 
 
-def _landing(jump: JumpAhead) -> str:
-    """Where a jump leads."""
-    if math.isnan(jump.eccentricity_after):
-        return "Jump to an unknown response"
-    way = "up" if jump.upwards else "down"
-    return f"Jump {way} to eccentricity {jump.eccentricity_after:.2f}"
+def _landing(jump: JumpAhead, key: str, rounding: Rounding) -> str:
+    """Which damper jumps, and where to."""
+    damper, before, after = jump.leading
+    of = f" of {damper}" if damper else ""
+    if math.isnan(after):
+        return f"Jump{of} to an unknown response"
+    shown = rounding.nearest(f"{key}after", after, 0.01)
+    return f"Jump{of} {'up' if after > before else 'down'} to eccentricity {shown:.2f}"
 
 
-def _way(outlook: Outlook) -> str:
+def _way(outlook: Outlook, key: str, rounding: Rounding) -> str:
     """On which side of the present speed a jump lies, and how soon it comes."""
     time = outlook.time_to_jump
     if math.isfinite(time):
-        return f"ahead, in {time:.{0 if time >= 10.0 else 1}f} s at the present acceleration"
+        soon = rounding.within_time(f"{key}time", time)
+        return f"ahead, in {soon} at the present acceleration"
     side = "above" if outlook.next.direction is Direction.RUN_UP else "below"
     return f"{side} the present speed"
 
 
-def _about_level(alarm: JumpAlarm, now: float) -> str:
+def _about_level(alarm: JumpAlarm, now: float, rounding: Rounding) -> str:
     """Why the level is what it is."""
     causes = alarm.causes(now)
     if causes:
         return "".join(f"; {_held(cause)}" for cause in causes)
     rest = alarm.held_for(now)
-    name = alarm.level(now).name
-    return f"; all are behind their limits, {name} ends within {math.ceil(rest)} s" if rest else ""
+    if not rest:
+        return ""
+    soon = rounding.within_time("held for", rest)
+    return f"; all are behind their limits, {alarm.level(now).name} ends in {soon}"
 
 
 def _held(cause: Cause) -> str:
@@ -100,7 +149,9 @@ def _held(cause: Cause) -> str:
     return f"the {limit.about} is not yet back {back} {release}, its limit is {threshold}"
 
 
-def _about_alarm(alarm: JumpAlarm, now: float) -> str:
+def _about_alarm(alarm: JumpAlarm, now: float, rounding: Rounding) -> str:
     """Where the alarm stands."""
     shelved = alarm.shelved_for(now)
-    return f"; shelved for another {shelved:.0f} s" if shelved else _STANDING[alarm.state(now)]
+    if shelved:
+        return f"; shelved for {rounding.within_time('shelved for', shelved)} more"
+    return _STANDING[alarm.state(now)]

@@ -61,6 +61,7 @@ class JumpAlarm:
         eccentricity: float,
         now: float,
         others: Mapping[str, float] = _NONE,
+        settings: AlarmSettings | None = None,
     ) -> None:
         """Take what is known of a machine now.
 
@@ -76,10 +77,13 @@ class JumpAlarm:
             The time [s].
         others : mapping of str to float, optional
             Further readings, by the names of their `limits`; those left out are unknown.
+        settings : AlarmSettings, optional
+            Thresholds and times as they are for now; those of the alarm if left out.
         """
         given = {**readings(outlook, eccentricity), **others}
+        settings = settings or self.settings
         for level, alarm in self.alarms.items():
-            alarm.update(self._switches[level].update(given, self.settings), now, self.settings)
+            alarm.update(self._switches[level].update(given, settings), now, settings)
 
     def causes(self, now: float) -> list[Cause]:
         """The limits that hold the level which is shown; none where a delay or the latch does."""

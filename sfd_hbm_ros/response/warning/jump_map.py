@@ -7,7 +7,7 @@ ends, and on from there where a stable branch leaves or goes on.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -18,12 +18,23 @@ from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.journey import legs, span
 from sfd_hbm_ros.response.curves.judged import CurveBranch
 from sfd_hbm_ros.response.curves.jumps import Direction
-from sfd_hbm_ros.response.curves.place import Place
-from sfd_hbm_ros.response.warning.outlook import JumpAhead, Outlook, unknown_outlook
+from sfd_hbm_ros.response.curves.place import Place, places_at
+from sfd_hbm_ros.response.responses import Response
+from sfd_hbm_ros.response.warning.outlook import (
+    SLIGHT,
+    Change,
+    JumpAhead,
+    Outlook,
+    changes,
+    unknown_outlook,
+)
+from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Interval = tuple[float, float]
+
+_NARROW = 0.1 * RPM  # rad/s, between a jump and the one back, below which a hysteresis is none
 
 
 @dataclass(frozen=True)
@@ -59,7 +70,7 @@ class JumpMap:
     stretches: tuple[Stretch, ...]
     owner: Mapping[CurveBranch, Indices]
 
-    def outlook(self, place: Place, acceleration: float) -> Outlook:
+    def outlook(self, place: Place, acceleration: float, settled: bool = True) -> Outlook:
         """What lies ahead of a machine; unknown if the place is on another curve.
 
         Parameters
@@ -68,6 +79,8 @@ class JumpMap:
             Where the machine is.
         acceleration : float
             Its angular acceleration [rad/s2]; 0 for a steady speed, NaN if unknown.
+        settled : bool, optional
+            Whether that tells a time.
         """
         owner, speed = self.owner.get(place.branch), place.value
         if owner is None:
@@ -79,7 +92,28 @@ class JumpMap:
             if other is not here
             for low, high in other.stable
         )
-        return Outlook(speed, acceleration, bistable, here.run_up, here.coast_down)
+        return Outlook(
+            speed,
+            acceleration,
+            bistable,
+            here.run_up,
+            here.coast_down,
+            settled,
+            place.eccentricity,
+        )
+
+    def outlook_of_any(self, speed: float, acceleration: float, settled: bool = True) -> Outlook:
+        """What lies ahead of a machine that may be on any stable response at a speed [rad/s].
+
+        That of the response whose jump is the nearest, with the others beside it; unknown where
+        the curve has none.
+        """
+        places = [place for place in places_at(list(self.owner), speed) if place.stable]
+        outlooks = (self.outlook(place, acceleration, settled) for place in places)
+        ordered = sorted(outlooks, key=lambda one: one.remoteness)
+        if not ordered:
+            return unknown_outlook(speed, acceleration)
+        return replace(ordered[0], others=tuple(ordered[1:]))
 
 
 def jump_map(curve: ResponseCurve) -> JumpMap:
@@ -137,17 +171,48 @@ def _within(branch: CurveBranch, step: int) -> Place:
 
 
 def _jump(curve: ResponseCurve, place: Place, direction: Direction) -> JumpAhead:
-    """The first jump on the way from a place."""
-    end, _, landing = next(legs(curve, place, direction.end))
-    branch, point = end.branch, end.point
-    if branch.stop is not Stop.CLOSED and point in (0, len(branch.values) - 1):
-        if end.value in span(curve.branches):
-            return JumpAhead(direction, math.inf)
-        if point > 0 and branch.stop is not Stop.CLEARANCE:
-            return JumpAhead(direction, math.nan)  # where it was lost
-    before = float(branch.worst_eccentricity[point])
-    after = landing.eccentricity if landing else math.nan
-    return JumpAhead(direction, end.value, before, after)
+    """The first jump on the way from a place; those that nobody would notice are passed over."""
+    for end, _, landing in legs(curve, place, direction.end):
+        branch, point = end.branch, end.point
+        if branch.stop is not Stop.CLOSED and point in (0, len(branch.values) - 1):
+            if end.value in span(curve.branches):
+                return JumpAhead(direction, math.inf)
+            if point > 0 and branch.stop is not Stop.CLEARANCE:
+                break  # where it was lost
+        before = branch.solutions[point]
+        after = landing.eccentricity if landing else math.nan
+        change = changes(_eccentricities(before), _at(landing) if landing else {})
+        if not (landing and _slight(curve, end, landing, change, direction)):
+            return JumpAhead(direction, end.value, before.eccentricity_max, after, change)
+    return JumpAhead(direction, math.nan)
+
+
+def _slight(
+    curve: ResponseCurve,
+    end: Place,
+    landing: Place,
+    change: tuple[Change, ...],
+    direction: Direction,
+) -> bool:
+    """Whether a jump is too small to be seen, or is undone by next to no change of the speed."""
+    if all(abs(one.after - one.before) < SLIGHT for one in change):
+        return True
+    back = next(legs(curve, landing, -direction.end))
+    undone = back.landing is not None and back.landing.branch is end.branch
+    return undone and abs(back.end.value - end.value) < _NARROW
+
+
+def _at(place: Place) -> dict[str, float]:
+    """Greatest eccentricity of each damper at a place, by its name."""
+    first, last = (
+        _eccentricities(place.branch.solutions[index]) for index in (place.index, place.index + 1)
+    )
+    return {name: one + place.part * (last[name] - one) for name, one in first.items()}
+
+
+def _eccentricities(response: Response) -> dict[str, float]:
+    """Greatest eccentricity of each damper, by its name."""
+    return {name: journal.eccentricity_max for name, journal in response.journals.items()}
 
 
 def _stable(branch: CurveBranch, points: Indices) -> Iterator[Interval]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from sfd_hbm_ros.response.warning.outlook import Outlook
@@ -207,3 +207,40 @@ class Switches:
         for name, reading in memory.items():
             if name in self._switches:
                 self._switches[name].restore(reading, settings)
+
+
+class Approach:
+    """Limits of the time to a jump that leave room between a warning and its error.
+
+    A fast ramp may bring a jump from nowhere to within the limits of both levels at once, as soon
+    as its acceleration is known. The time that there is then is divided as the limits divide
+    theirs: where a warning comes 6 s before the jump in place of 30 s, its error comes 2 s before
+    it in place of 10 s.
+    """
+
+    def __init__(self) -> None:
+        self._lead = math.inf  # time to the jump when it came within the warning's limit [s]
+        self._near = False
+
+    def fitted(self, settings: AlarmSettings, time: float, reported: bool) -> AlarmSettings:
+        """Return the settings with the limits that the present ramp leaves room for.
+
+        Parameters
+        ----------
+        settings : AlarmSettings
+            The settings as given.
+        time : float
+            Time to the jump [s]; NaN while unknown, which leaves things as they were.
+        reported : bool
+            Whether an error is reported already.
+        """
+        if not settings.time_warn:
+            return settings
+        if time > (1.0 + settings.deadband) * settings.time_warn:
+            self._near = False
+        elif time < settings.time_warn and not self._near:
+            self._near, self._lead = True, math.inf if reported else time
+        if not self._near or self._lead >= settings.time_warn:
+            return settings
+        part = self._lead / settings.time_warn
+        return replace(settings, time_error=part * settings.time_error)

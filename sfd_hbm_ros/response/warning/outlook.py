@@ -1,9 +1,36 @@
 """What lies ahead of a machine: the jumps at both ends of its present stretch of a branch."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from sfd_hbm_ros.response.curves.jumps import Direction
+
+SLIGHT = 0.01
+"""Change of the eccentricity below which a jump is none for an operator, of the clearance."""
+
+
+class Change(NamedTuple):
+    """What a jump does to one damper: its eccentricity before and after, NaN if unknown."""
+
+    damper: str
+    before: float
+    after: float
+
+
+def changes(before: Mapping[str, float], after: Mapping[str, float]) -> tuple[Change, ...]:
+    """What becomes of the eccentricities of the dampers, the greatest change first.
+
+    Where it is not known what comes after, it is the greatest eccentricity before.
+    """
+    found = [Change(name, one, after.get(name, math.nan)) for name, one in before.items()]
+    return tuple(sorted(found, key=_size, reverse=True))
+
+
+def _size(change: Change) -> float:
+    size = abs(change.after - change.before)
+    return change.before if math.isnan(size) else size
 
 
 @dataclass(frozen=True)
@@ -19,17 +46,26 @@ class JumpAhead:
     eccentricity_before, eccentricity_after : float
         Greatest eccentricity of any damper on both sides of the jump; NaN without a jump, and
         after it where no stable response is known to land on.
+    changes : tuple of Change
+        What it does to each damper, the greatest change first; empty where that is not known.
     """
 
     direction: Direction
     speed: float
     eccentricity_before: float = math.nan
     eccentricity_after: float = math.nan
+    changes: tuple[Change, ...] = ()
 
     @property
     def upwards(self) -> bool:
         """Whether the orbit grows."""
-        return self.eccentricity_after > self.eccentricity_before
+        return self.leading.after > self.leading.before
+
+    @property
+    def leading(self) -> Change:
+        """The damper to speak of; without a name where there is none."""
+        unnamed = Change("", self.eccentricity_before, self.eccentricity_after)
+        return self.changes[0] if self.changes else unnamed
 
     def margin(self, speed: float) -> float:
         """Distance from a speed to that of the jump [rad/s]; 0 where it has been passed."""
@@ -53,6 +89,13 @@ class Outlook:
         Whether another stable response is known at this speed; None for not computable.
     run_up, coast_down : JumpAhead
         Where it would leave its branch on the way up, and on the way down.
+    settled : bool
+        Whether the acceleration has settled, so that it tells a time.
+    eccentricity : float
+        Greatest eccentricity of any damper there, as the curve has it; NaN if unknown.
+    others : tuple of Outlook
+        What lies ahead if the machine is on another response at this speed, where it is not known
+        on which; no jump of theirs is nearer.
     """
 
     speed: float
@@ -60,6 +103,9 @@ class Outlook:
     bistable: bool | None
     run_up: JumpAhead
     coast_down: JumpAhead
+    settled: bool = True
+    eccentricity: float = math.nan
+    others: tuple["Outlook", ...] = ()
 
     @property
     def next(self) -> JumpAhead:
@@ -69,6 +115,11 @@ class Outlook:
         if self.acceleration < 0.0:
             return self.coast_down
         return min(self.run_up, self.coast_down, key=self._remoteness)
+
+    @property
+    def remoteness(self) -> tuple[int, float]:
+        """Order of outlooks by their next jumps, the nearest first."""
+        return self._remoteness(self.next)
 
     @property
     def margin(self) -> float:
@@ -82,10 +133,15 @@ class Outlook:
 
     @property
     def time_to_jump(self) -> float:
-        """Time to the next jump at the present acceleration [s]; infinite at a steady speed."""
+        """Time to the next jump at the present acceleration [s]; infinite at a steady speed.
+
+        It is not known until the acceleration has settled, after a start or a reversal.
+        """
         margin = self.margin
         if not math.isfinite(margin):
             return margin
+        if self.acceleration != 0.0 and not self.settled:
+            return math.nan
         return margin / abs(self.acceleration) if self.acceleration != 0.0 else math.inf
 
     def _remoteness(self, jump: JumpAhead) -> tuple[int, float]:

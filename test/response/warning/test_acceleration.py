@@ -248,3 +248,29 @@ def test_speeds_beyond_what_numbers_can_hold_make_it_unknown():
     for i in range(200, 400):
         estimator.add(round(i * 0.05 * SECOND), 400.0 + 0.1 * i)
     assert estimator.acceleration == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+@pytest.mark.parametrize("change", ["start", "reversal"])
+def test_it_has_settled_only_where_it_tells_a_time(change, noise):
+    """A tenth of a second after a start or a reversal as after seconds of it."""
+    times = regular(30.0)
+    errors = np.random.default_rng(3).normal(0.0, noise, len(times))
+    before = 0.0 if change == "start" else 26.0
+    speeds = 400.0 + np.where(times < 15.0, before * times, before * 15.0 - 26.0 * (times - 15.0))
+    estimator = AccelerationEstimator()
+    settled, found = [], []
+    for time, speed in zip(times, speeds + errors, strict=True):
+        estimator.add(START + round(time * SECOND), speed)
+        settled.append(estimator.settled)
+        found.append(estimator.acceleration)
+    true = np.where(times < 15.0, before, -26.0)
+    told = np.array(settled) & (np.array(found) != 0.0)
+    late = times > 15.0 + WINDOW
+    assert told[late].all()
+    # what was so far is told for as long as another one has not been seen
+    wrong = told & (times > 15.0 + 0.6 * WINDOW)
+    assert np.array(found)[wrong] == pytest.approx(true[wrong], rel=0.3)
+    between = told & (times > 15.0) & (times <= 15.0 + 0.6 * WINDOW)
+    near = (abs(np.array(found) - true) < 8.0) | (abs(np.array(found) - before) < 8.0)
+    assert near[between].all()

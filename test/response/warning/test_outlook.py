@@ -267,6 +267,47 @@ def test_branch_that_ends_within_the_range(stop, speed):
     assert math.isnan(ahead.eccentricity_after)
 
 
+@pytest.mark.parametrize(
+    ("fold", "after", "back", "speed"),
+    [
+        (410.0, 0.41, 408.0, 430.0),  # by less than a hundredth of the clearance
+        (410.0, 0.6, 410.0 - 0.05 * RPM, 430.0),  # undone by a twentieth of a rpm
+        (410.0, 0.6, 409.0, 410.0),
+        (410.0, 0.42, 408.0, 410.0),
+    ],
+)
+def test_a_jump_that_nobody_would_notice_is_passed_over(fold, after, back, speed):
+    """Up to a fold, on from where it lands to the jump there, and on to a third branch."""
+    curve = curve_of("disk_1")
+    first = circles([390.0, fold], [0.3, 0.405], [1], Stop.CLEARANCE)
+    second = circles([back, 430.0], [after, after + 1e-4], [0], Stop.CLEARANCE)
+    third = circles([420.0, 440.0], [0.1, 0.1], [], Stop.RANGE)
+    found = jump_map(ResponseCurve(curve.balance, curve.family, (first, second, third)))
+    [place] = places_at([first], 400.0)
+    ahead = found.outlook(place, 1.0).next
+    assert ahead.speed == speed
+    assert ahead.leading.damper == "damper_1"
+    if speed == fold:
+        assert ahead.leading[1:] == (pytest.approx(0.405), pytest.approx(after, abs=1e-3))
+
+
+@pytest.mark.parametrize("acceleration", [0.0, 1.0, -1.0])
+def test_of_a_machine_on_an_unknown_response_both_outlooks_are_told(acceleration):
+    """The nearer jump comes first."""
+    speed = 3990 * RPM
+    known = [map_of("disk_1").outlook(one, acceleration) for one in places("disk_1", speed)]
+    any_of_both = map_of("disk_1").outlook_of_any(speed, acceleration)
+    told = [any_of_both, *any_of_both.others]
+    assert len(known) == len(told) == 2
+    assert any_of_both.margin == min(one.margin for one in known)
+    for one in known:
+        [same] = [other for other in told if other.eccentricity == one.eccentricity]
+        assert (same.run_up, same.coast_down) == (one.run_up, one.coast_down)
+    single = map_of("disk_1").outlook_of_any(3900 * RPM, acceleration)
+    assert single.others == ()
+    assert math.isnan(map_of("disk_1").outlook_of_any(3600 * RPM, acceleration).margin)
+
+
 def test_place_on_another_curve_is_not_computable():
     [place] = places("disk_1", 3900 * RPM)
     outlook = map_of("disk_2").outlook(place, 1.0)
@@ -306,6 +347,12 @@ def test_next_jump_is_that_in_the_direction_of_travel(acceleration, margin, time
 )
 def test_at_a_steady_speed_what_is_known_comes_first(run_up, coast_down, expected):
     assert made(0.0, run_up, coast_down).margin == pytest.approx(expected, nan_ok=True)
+
+
+def test_no_time_is_told_before_the_acceleration_has_settled():
+    assert math.isnan(replace(made(2.0), settled=False).time_to_jump)
+    assert replace(made(0.0), settled=False).time_to_jump == math.inf
+    assert replace(made(2.0, run_up=math.inf), settled=False).time_to_jump == math.inf
 
 
 def test_a_jump_that_has_been_passed_is_no_distance_ahead():
