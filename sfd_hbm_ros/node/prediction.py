@@ -19,7 +19,7 @@ from sfd_hbm_ros.response.tracking.tracker import Tracker
 AT_REST = "the rotor is at rest: there is nothing to predict"
 
 PATIENCE = 0.4
-"""Processor time that a prediction may take [s], lest the heartbeat stop meanwhile."""
+"""Processor time that a prediction may take [s], lest all else wait for it."""
 
 _ESTIMATE_EVERY = 5.0  # s, from one estimate of the truncation error to the next
 

@@ -79,9 +79,14 @@ class Predictor(LeanNode):
             if not path:
                 raise ParameterError("machine_file must be the path of a machine file, not empty")
             self._known.check_file(path)
-            machine = self._known.adopt(_read_machine(path))
+            machine = _read_machine(path)
+            self._reporter.step()  # each of these takes a while for a large machine
+            machine = self._known.adopt(machine)
+            self._reporter.step()
             self._watch.alarm.settings = self._known.alarm_settings()
-            self._memory.restore(self._operation.begin(machine))
+            model = self._operation.begin(machine)
+            self._reporter.step()
+            self._memory.restore(model)
         except Exception as error:  # whatever it is, the node stays up and says it
             self._release("unconfigured")
             self._problem = str(error)
@@ -132,6 +137,7 @@ class Predictor(LeanNode):
         """Save what is to outlive the process, and end the worker process."""
         self._memory.release()
         self._curves.worker.close()
+        self._reporter.close()
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters together, or none for a reason; both parameter services end here."""

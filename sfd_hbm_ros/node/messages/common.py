@@ -24,6 +24,9 @@ from sfd_hbm_ros.response.tracking.measured import named_harmonics
 Journals = Mapping[str, JournalMotion]
 Named = Iterator[tuple[str, float]]
 
+MOST_NAMES = 10_000
+"""Named numbers that a message may hold: those of any machine, and soon read."""
+
 _SECOND = 1_000_000_000
 _ABSOLUTE_ZERO = -273.15  # deg C
 
@@ -162,8 +165,10 @@ def named(message: JointState) -> Named:
     Raises
     ------
     InputError
-        If names and numbers do not pair.
+        If there are more than `MOST_NAMES`, or names and numbers do not pair.
     """
+    if len(message.name) > MOST_NAMES:
+        raise InputError(f"name must hold at most {MOST_NAMES} names, not {len(message.name)}")
     if len(message.name) != len(message.position):
         raise InputError(
             f"position must hold a number for each of the {len(message.name)} names, "

@@ -41,9 +41,10 @@ def read_what_if(message: JointState) -> list[float]:
     InputError
         If there is none or more than `MOST`, or one is not positive or not finite.
     """
+    number = len(message.velocity)
+    if not 1 <= number <= MOST:
+        raise InputError(f"velocity must hold 1 to {MOST} rotor speeds [rad/s], not {number}")
     speeds = [float(speed) for speed in message.velocity]
-    if not 1 <= len(speeds) <= MOST:
-        raise InputError(f"velocity must hold 1 to {MOST} rotor speeds [rad/s], not {len(speeds)}")
     for i, speed in enumerate(speeds):
         if not 0.0 < speed < math.inf:
             raise InputError(f"velocity[{i}] must be a finite number [rad/s] above 0, not {speed}")

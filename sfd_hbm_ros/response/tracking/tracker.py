@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Solution
-from sfd_hbm_ros.hbm.time_limit import TimeLimitError, time_limit
+from sfd_hbm_ros.hbm.time_limit import ELAPSED, TimeLimitError, time_limit
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.place import Place
 from sfd_hbm_ros.response.tracking.excursion import Excursion
@@ -161,8 +161,11 @@ class Tracker:
                 return replace(tracked, doubtful=away, wrong_before=wrong)
         except ResonanceError as error:
             return Tracked(no_solution(self._guide.balance, speed, str(error)))
-        except TimeLimitError:
+        except TimeLimitError as error:
             reason = f"no solution was found within {self._patience:g} s of processor time"
+            if error.busy:
+                elapsed = ELAPSED * self._patience
+                reason = f"no solution was found within {elapsed:g} s, as the computer is busy"
         except Exception as error:  # a speed or a machine beyond what numbers can hold
             reason = f"{type(error).__name__}: {error}"
         self._break_off()

@@ -64,9 +64,24 @@ def test_wrong_speed_that_tells_no_branch_does_not_settle():
 def clock(monkeypatch):
     """A processor that takes a millisecond for each evaluation, however busy the computer is."""
     ticks = count()
-    monkeypatch.setattr(
-        time_limit, "time", SimpleNamespace(thread_time=lambda: 1e-3 * next(ticks))
-    )
+    clocks = SimpleNamespace(thread_time=lambda: 1e-3 * next(ticks), monotonic=lambda: 0.0)
+    monkeypatch.setattr(time_limit, "time", clocks)
+
+
+@pytest.fixture
+def busy(monkeypatch):
+    """A computer so busy that hardly any processor time comes while its clock goes on."""
+    ticks = count()
+    clocks = SimpleNamespace(thread_time=lambda: 0.0, monotonic=lambda: 5e-3 * next(ticks))
+    monkeypatch.setattr(time_limit, "time", clocks)
+
+
+def test_a_search_ends_on_a_busy_computer_too(busy):
+    tracker = Tracker(balance(force=-1e-9), patience=0.1)
+    followed(tracker, [3900.0, INSIDE])
+    tracker.change(balance(force=-1e4))
+    said = tracker.predict(INSIDE * RPM).solution.message
+    assert said == "no solution was found within 0.25 s, as the computer is busy"
 
 
 def test_patience_ends_a_search_which_a_new_curve_spares(clock):
