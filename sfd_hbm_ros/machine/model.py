@@ -21,6 +21,7 @@ from sfd_hbm_ros.machine.components import (
 from sfd_hbm_ros.machine.nested import many, table
 from sfd_hbm_ros.machine.parts import Part
 from sfd_hbm_ros.machine.rules import flag, title
+from sfd_hbm_ros.machine.vectors import interval
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,9 @@ class Machine(Part):
     unbalance: Annotated[tuple[Unbalance, ...], many("unbalances", Unbalance)] = ()
     loads: Annotated[tuple[Load, ...], many("constant forces", Load)] = ()
     gravity: Annotated[bool, flag("whether gravity acts, 9.80665 m/s2 along -y")] = False
+    operating_speed_rpm: Annotated[
+        tuple[float, ...], interval("range of the speeds at which it runs", "rpm", below=9e5)
+    ] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()

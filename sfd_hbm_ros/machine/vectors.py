@@ -22,6 +22,22 @@ def pair(about: str, unit: str) -> Rule:
     return Rule(about, f"[x, y], each {component.allowed}", convert, plain=list, unit=unit)
 
 
+def interval(about: str, unit: str, *, below: float) -> Rule:
+    """Return the rule of an interval [least, most], or of none: empty."""
+    end = number("", unit, least=0.0, below=below)
+
+    def convert(value: Any) -> tuple[float, ...]:
+        if value is None or not _sequence(value):
+            return ()
+        least, most = map(end.convert, _sequence(value))
+        if not least < most:
+            raise ValueError
+        return least, most
+
+    allowed = f"[least, most], each {end.allowed}, the second above the first, or [] for none"
+    return Rule(about, allowed, convert, plain=list)
+
+
 def matrix(about: str, direct: Rule) -> Rule:
     """Return the rule of a 2x2 matrix ((xx, xy), (yx, yy)), with `direct` for xx and yy.
 

@@ -20,12 +20,15 @@ from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.messages.curve import response_curve_message
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
+from sfd_hbm_ros.node.speed_range import SpeedRange, outside
 from sfd_hbm_ros.node.worker.curve_job import CurveJob, CurveResult
 from sfd_hbm_ros.node.worker.renewal import MeanLoads, Renewal
 from sfd_hbm_ros.node.worker.worker import Patience, Worker
 from sfd_hbm_ros.response.curves.deviation import HOLDS, deviation, landmarks
 from sfd_hbm_ros.response.curves.judged import CurveBranch
 from sfd_hbm_ros.response.warning.jump_map import JumpMap, jump_map
+from sfd_hbm_ros.response.warning.settings import Level
+from sfd_hbm_ros.units import RPM
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """Reliable, and the last message is there for whoever comes later."""
@@ -80,6 +83,7 @@ class Curves:
         self._present: CurveJob | None = None  # the curve of the machine as it is
         self._mean = MeanLoads()  # of those for which the curve does not hold
         self._renewal = Renewal()
+        self._range = SpeedRange()
         self._outdated_since = self._loaded_at = self._judged_at = self._held_at = -math.inf
         self._publisher = node.create_publisher(PointCloud2, "~/response_curve", LATCHED)
         node.create_service(Trigger, "~/recompute", self._recompute)
@@ -130,6 +134,39 @@ class Curves:
             message += f"; the response curve is outdated by {self.age:.1f} s"
         return replace(status, message=message, values=values)
 
+    @property
+    def outside(self) -> str:
+        """On which side of the curve the machine runs, in words; empty if it is on the curve."""
+        if self.result is None or math.isnan(self._speed):
+            return ""
+        job = self.result.job
+        where = outside(self._speed, job.lowest, job.highest)
+        if not where:
+            return ""
+        wider = (self._range.lowest, self._range.highest) != (job.lowest, job.highest)
+        if wider and not self.worker.failed:
+            return f"{where}; a wider one is being computed"
+        end = "speed.max" if self._speed > job.highest else "speed.min"
+        return f"{where}: the parameter {end} moves that end"
+
+    def range_in(self, inputs: Status) -> Status:
+        """Return the status of the inputs with what there is to say of the speed's size."""
+        doubt = self._range.doubt(self._speed, self._critical)
+        said = (f"the speed is {self.outside}" if self.outside else "", doubt)
+        words = "; ".join(part for part in (inputs.message, *said) if part)
+        level = max(inputs.level, Level.WARN) if any(said) else inputs.level
+        return replace(inputs, level=level, message=words)
+
+    @property
+    def _speed(self) -> float:
+        """The speed that the machine is believed to have [rad/s]; NaN if none."""
+        prediction = self._operation.believed
+        return math.nan if self._operation.silence or not prediction else prediction.speed
+
+    @property
+    def _critical(self) -> float:
+        return self.result.critical if self.result else math.nan
+
     def release(self) -> None:
         """Forget the curve, and end the worker process until there is another machine.
 
@@ -140,18 +177,20 @@ class Curves:
             self._publish((), ())
         self.result = self._jumps = self._own = self._present = None
         self.holds, self._held_at, self._landmarks = False, -math.inf, ()
-        self._mean, self._renewal = MeanLoads(), Renewal()
+        self._mean, self._renewal, self._range = MeanLoads(), Renewal(), SpeedRange()
 
     def _job(self) -> CurveJob | None:
         """What curve is wanted; None where there is no machine."""
         model, given = self._operation.model, self._parameters
         if model is None:
             return None
+        operating = tuple(rpm * RPM for rpm in model.machine.operating_speed_rpm)
+        self._range.configure(given["speed.min"], given["speed.max"], operating)
         return CurveJob(
             model.loaded,
             model.harmonics.highest,
-            given["speed.min"],
-            given["speed.max"],
+            self._range.lowest,
+            self._range.highest,
             given["curve.detached"],
             self.revision,
         )
@@ -173,6 +212,7 @@ class Curves:
         hang, attempts = (self._parameters[f"curve.{key}"] for key in ("hang_after", "attempts"))
         self.worker.patience = Patience(hang, attempts=attempts)
         now = time.monotonic()
+        self._follow_speed(now)
         self._follow_loads(now)
         self._trust()
         job = self.worker.job
@@ -183,6 +223,14 @@ class Curves:
         result = self.worker.poll()
         if result is not None:
             self._adopt(result)
+
+    def _follow_speed(self, now: float) -> None:
+        """Want a wider curve where the machine leaves this one, but not for what was no speed."""
+        speed = self._speed
+        if math.isnan(speed) or self._range.doubt(speed, self._critical):
+            return
+        if self._range.follow(speed, self._operation.acceleration, now):
+            self.look()
 
     def _follow_loads(self, now: float) -> None:
         """Judge the curve by the loads that have come, and want another where it does not hold."""

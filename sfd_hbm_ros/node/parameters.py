@@ -15,8 +15,10 @@ from sfd_hbm_ros.machine.oil import Oil
 from sfd_hbm_ros.node.schema import SCHEMA, ParameterError, Spec, machine_schema
 from sfd_hbm_ros.node.unbalance import LIST_SCHEMA, LISTS, ListSpec, agreed, everywhere, listed
 from sfd_hbm_ros.response.warning.settings import AlarmSettings
+from sfd_hbm_ros.units import RPM
 
 _SECTIONS = ("dampers", "unbalance", "gravity")
+_RANGE = ("speed.min", "speed.max")
 
 
 class Parameters:
@@ -34,6 +36,7 @@ class Parameters:
         # a parameter file holds an empty list.
         self._given = {name: p.value for name, p in node._parameter_overrides.items()}
         self._refused: dict[str, str] = {}
+        self._chosen: set[str] = set()  # what has been set since the start
         self._specs = {spec.name: spec for spec in SCHEMA}
         self._machine: dict[str, Spec | ListSpec] = {}
         self._file: Machine | None = None  # what the machine file holds
@@ -152,10 +155,12 @@ class Parameters:
             self._declare(spec, values[spec.name])
             self._machine[spec.name] = spec
         self._warn(name for name in self._given if name.partition(".")[0] in _SECTIONS)
+        self._set_range(machine.operating_speed_rpm)
         return machine
 
     def release(self) -> None:
         """Undeclare the values of the machine."""
+        self._set_range([float(self._specs[name].default) / RPM for name in _RANGE])
         for name in self._machine:
             self._node.undeclare_parameter(name)
         self._machine, self._file = {}, None
@@ -197,6 +202,31 @@ class Parameters:
         """Note that parameters have been set, which amends what was given at the start."""
         for parameter in parameters:
             self._refused.pop(parameter.name, None)
+        self._chosen |= {parameter.name for parameter in parameters}
+
+    def _set_range(self, rpm: Sequence[float]) -> None:
+        """Let the speed have another range [rpm], but for what a user has chosen; none if empty.
+
+        Raises
+        ------
+        ParameterError
+            If that does not go together.
+        """
+        chosen = self._chosen | self._given.keys()
+        values = {
+            name: min(max(value * RPM, self._specs[name].least), self._specs[name].most)
+            for name, value in zip(_RANGE, rpm, strict=False)
+            if name not in chosen
+        }
+        values = {name: value for name, value in values.items() if value != self[name]}
+        if not values:
+            return
+        result = self._node.set_parameters_atomically(
+            [Parameter(name, value=value) for name, value in values.items()]
+        )
+        self._chosen -= values.keys()
+        if not result.successful:
+            raise ParameterError(result.reason)
 
     def _converted(self, parameter: Parameter) -> Parameter:
         """Return one parameter in the type that it was declared with."""

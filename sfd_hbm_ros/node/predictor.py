@@ -173,18 +173,20 @@ class Predictor(LeanNode):
             self._watch.status(),
             self._measurement.added_to(self._memory.added_to(model)),
             diagnostics.solver_status(work.prediction, work.predictions, work.failures),
-            diagnostics.inputs_status(
-                work.active,
-                work.speed,
-                [
-                    work.load,
-                    self._measurement.feed,
-                    self._oil.feed,
-                    self._what_if.drops,
-                    self._exceptions,
-                ],
-                self._known["stale_after"],
-                time.monotonic(),
+            self._curves.range_in(
+                diagnostics.inputs_status(
+                    work.active,
+                    work.speed,
+                    [
+                        work.load,
+                        self._measurement.feed,
+                        self._oil.feed,
+                        self._what_if.drops,
+                        self._exceptions,
+                    ],
+                    self._known["stale_after"],
+                    time.monotonic(),
+                )
             ),
         ]
 

@@ -105,7 +105,8 @@ class Watch:
         )
         eccentricity = _greatest(outlook, _eccentricity(tracked))
         self.alarm.update(outlook, eccentricity, now, settings=settings)
-        signature = *self.signature, self._branch(tracked), self._curves.usable
+        outside = bool(self._curves.outside)
+        signature = *self.signature, self._branch(tracked), self._curves.usable, outside
         if signature != self._published:
             for call in self.after_change:
                 call()
@@ -124,7 +125,11 @@ class Watch:
         outlook, branch, age = self._outlook(tracked), self._branch(tracked), self._curves.age
         given = _eccentricity(tracked), age, time.monotonic(), self._rounding
         status = jump_status(self.alarm, outlook, branch, *given)
-        return replace(status, message=status.message + self._reservation(age))
+        level = status.level
+        # Where no jump is seen, that all is well is not either.
+        if self._curves.outside and not self.alarm.shelved_for(time.monotonic()):
+            level = max(level, Level.WARN)
+        return replace(status, level=level, message=status.message + self._reservation(age))
 
     def _reservation(self, age: float) -> str:
         """Return why the warning is none, or under which reservation it stands."""
@@ -135,6 +140,8 @@ class Watch:
             return "; there is no prediction, as the status Solver tells"
         if math.isnan(age):
             return "; there is no response curve yet"
+        if self._curves.outside:
+            return f"; the speed is {self._curves.outside}"
         use = "still used" if self._curves.usable else "of no use any more"
         since = self._rounding.within_time("age", age)
         return f"; the response curve has been outdated for {since} and is {use}" if age else ""

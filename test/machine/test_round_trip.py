@@ -156,4 +156,4 @@ def test_a_written_file_looks_like_the_example(paper: Machine, path: Path) -> No
     ]
     assert "- {name: bearing_1, node: 0, stiffness: 1.05e+08, damping: 0.0}" in lines
     assert "  film: {model: short, cavitation: true, inertia: true}" in lines
-    assert lines[-2:] == ["loads: []", "gravity: false"]
+    assert lines[-3:] == ["loads: []", "gravity: false", "operating_speed_rpm: []"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -13,6 +14,8 @@ from sfd_hbm_ros.machine import Machine
 from sfd_hbm_ros.response.curves.curve import ResponseCurve, response_curve
 from sfd_hbm_ros.response.curves.detached import detached_branches
 from sfd_hbm_ros.response.curves.judged import CurveBranch
+from sfd_hbm_ros.rotor import RotorModel
+from sfd_hbm_ros.rotor.criticals import critical_speeds
 
 
 @dataclass(frozen=True)
@@ -55,12 +58,15 @@ class CurveResult:
         Detached branches; None where they were not asked for, or are still being looked for.
     seconds : float
         Time it took [s].
+    critical : float
+        First critical speed without the films [rad/s]; NaN if there is none.
     """
 
     job: CurveJob
     curve: ResponseCurve
     detached: tuple[CurveBranch, ...] | None
     seconds: float
+    critical: float
 
     @property
     def complete(self) -> bool:
@@ -111,7 +117,8 @@ def compute(job: CurveJob, progress: Callable[[float], None]) -> Iterator[CurveR
         balance = HarmonicBalance(job.machine, Harmonics(job.harmonics))
         curve = response_curve(balance, job.lowest, job.highest, progress=progress)
         _measure(curve.branches)
-        result = CurveResult(job, curve, None, time.monotonic() - start)
+        critical = _first_critical(balance.model)
+        result = CurveResult(job, curve, None, time.monotonic() - start, critical)
     yield result
     if not job.detached:
         return
@@ -119,6 +126,14 @@ def compute(job: CurveJob, progress: Callable[[float], None]) -> Iterator[CurveR
         detached = tuple(detached_branches(curve, job.lowest, job.highest, progress=progress))
         _measure(detached)
     yield replace(result, detached=detached, seconds=time.monotonic() - start)
+
+
+def _first_critical(model: RotorModel) -> float:
+    """The first critical speed [rad/s]; NaN where none can be computed."""
+    try:
+        return min((one.speed for one in critical_speeds(model)), default=math.nan)
+    except (ArithmeticError, RuntimeError, ValueError):
+        return math.nan
 
 
 def _measure(branches: Iterable[CurveBranch]) -> None:

@@ -64,7 +64,7 @@ def _about_one(
     if math.isinf(jump.speed):
         passed = alarm.held_for(now) > 0.0 and not lock_up
         other = "; another stable response exists at this speed" if outlook.bistable else ""
-        return f"{near}No jump ahead{' any more' if passed else ''}{other}"
+        return f"{near}No jump ahead{' any more' if passed else ''}{_reach(outlook)}{other}"
     if math.isnan(jump.speed):
         return f"{near}It is not known whether a jump lies ahead"
     return near + _about_jump(outlook, "", rounding)
@@ -81,7 +81,7 @@ def _about_responses(
         shown = rounding.nearest(f"{key}eccentricity", one.eccentricity, 0.01)
         jump = one.next
         if math.isinf(jump.speed):
-            then = "no jump ahead"
+            then = f"no jump ahead{_reach(one)}"
         elif math.isnan(jump.speed):
             then = "it is not known whether a jump lies ahead"
         else:
@@ -92,6 +92,16 @@ def _about_responses(
         f"It is not known on which of {len(outlooks)} responses the machine is: either "
         f"{', or '.join(parts)}; an orbit on ~/measured would settle it"
     )
+
+
+def _reach(outlook: Outlook) -> str:
+    """How far it is known that there is none."""
+    up, down = (jump.reach / RPM for jump in (outlook.run_up, outlook.coast_down))
+    if math.isfinite(up) and math.isfinite(down):
+        return f" from {down:.0f} to {up:.0f} rpm"
+    rising = outlook.next.direction is Direction.RUN_UP
+    reach = up if rising else down
+    return f" {'up' if rising else 'down'} to {reach:.0f} rpm" if math.isfinite(reach) else ""
 
 
 def _about_jump(outlook: Outlook, key: str, rounding: Rounding) -> str:

@@ -176,7 +176,7 @@ def _jump(curve: ResponseCurve, place: Place, direction: Direction) -> JumpAhead
         branch, point = end.branch, end.point
         if branch.stop is not Stop.CLOSED and point in (0, len(branch.values) - 1):
             if end.value in span(curve.branches):
-                return JumpAhead(direction, math.inf)
+                return JumpAhead(direction, math.inf, reach=end.value)
             if point > 0 and branch.stop is not Stop.CLEARANCE:
                 break  # where it was lost
         before = branch.solutions[point]

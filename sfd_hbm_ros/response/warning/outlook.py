@@ -48,6 +48,8 @@ class JumpAhead:
         after it where no stable response is known to land on.
     changes : tuple of Change
         What it does to each damper, the greatest change first; empty where that is not known.
+    reach : float
+        Speed up or down to which it is known that there is none [rad/s]; NaN with a jump.
     """
 
     direction: Direction
@@ -55,6 +57,7 @@ class JumpAhead:
     eccentricity_before: float = math.nan
     eccentricity_after: float = math.nan
     changes: tuple[Change, ...] = ()
+    reach: float = math.nan
 
     @property
     def upwards(self) -> bool:
