@@ -77,7 +77,7 @@ def run(chosen: argparse.Namespace) -> None:
     if chosen.json:
         print_json(data)
     else:
-        print(text_of(data))
+        print(text_of(data, summary))
     if not summary.anywhere_stable:
         raise NoSolutionError(
             "no response in the range is stable: the machine can stay on none of those found"

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sfd_hbm_ros.commands.arguments import truncation_sentence
 from sfd_hbm_ros.hbm.points import Stop
+from sfd_hbm_ros.hbm.solve import sag_sentences, static_sags
 from sfd_hbm_ros.report.abscissa import Abscissa
 from sfd_hbm_ros.report.units import length_text
 from sfd_hbm_ros.response.curves.accuracy import curve_error
@@ -54,6 +55,7 @@ def data_of(summary: Summary, seconds: float) -> dict[str, Any]:
             for branch, folds, jumps in summary.detached
         ],
         "stable_anywhere": summary.anywhere_stable,
+        **({"sag": static_sags(curve.balance)} if varied.path is None else {}),
         "harmonics": curve.balance.harmonics.highest,
         "truncation_error": curve_error(curve),
         "seconds": seconds,
@@ -171,12 +173,13 @@ def _reach(branch: CurveBranch) -> dict[str, Any]:
     }
 
 
-def text_of(data: dict[str, Any]) -> str:
+def text_of(data: dict[str, Any], summary: Summary) -> str:
     """The same for people."""
     unit = data["varies"]["unit"]
     lines = [
         f"{data['points']} points in {data['seconds']:.2f} s",
         truncation_sentence(data["harmonics"], data["truncation_error"]),
+        *(sag_sentences(summary.curve.balance) if "sag" in data else ()),
         *_peaks_text(data),
         *(f"fold    {_point_text(fold)}" for fold in data["folds"]),
         *(f"jump    {_jump_text(jump, data)}" for jump in data["jumps"]),

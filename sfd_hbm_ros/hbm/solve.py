@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 
 _SHORT = ContinuationOptions(longest_step=0.1, points=150)  # a live prediction has to end
 _DETOUR = 0.05  # of the speed, by which a branch may turn back between two folds
+_BOUNDLESS = 1e6  # sag, of the clearance, that only rounding keeps from being infinite
 _GUESS_LIMIT = 0.7  # eccentricity to which a linear guess is scaled down
 
 
@@ -171,6 +172,40 @@ def solution_at(balance: HarmonicBalance, speed: float, x: Array) -> Solution:
     return _solution(balance, speed, x, Outcome.CONVERGED, Outcome.CONVERGED.value, ())
 
 
+def static_sags(balance: HarmonicBalance) -> dict[str, float]:
+    """How far the journals sag under the static loads, by damper, of the clearance.
+
+    They hang on the shaft and on their centring springs alone: at rest a film bears nothing. The
+    sag is infinite where nothing else bears the loads.
+    """
+    condensed = balance.condensation.at(1.0, [0.0])  # the speed is of no account
+    force = condensed.force[0].real
+    names = [damper.name for damper in balance.machine.dampers]
+    if not force.any():
+        return dict.fromkeys(names, 0.0)
+    try:
+        q: Array = np.linalg.solve(condensed.stiffness[0].real, force).astype(float)
+    except np.linalg.LinAlgError:
+        q = np.full(force.size, np.inf)
+    sags = np.hypot(*(q / balance.clearances).reshape(-1, 2).T)
+    sags[~(sags < _BOUNDLESS)] = np.inf
+    return dict(zip(names, sags.tolist(), strict=True))
+
+
+def sag_sentences(balance: HarmonicBalance) -> list[str]:
+    """What is to be said of every damper whose journal sags beyond its clearance."""
+    clearances = {damper.name: damper.clearance for damper in balance.machine.dampers}
+    return [
+        f"at rest {name} sags by {sag:.2f} of its clearance ({1e6 * sag * clearances[name]:.0f} "
+        f"um of {1e6 * clearances[name]:.0f} um) on its centring spring, so that its journal "
+        "lies on the housing"
+        if np.isfinite(sag)
+        else f"at rest nothing holds the journal of {name}: it lies on the housing"
+        for name, sag in static_sags(balance).items()
+        if sag >= 1.0
+    ]
+
+
 def _failure(
     balance: HarmonicBalance,
     speed: float,
@@ -178,6 +213,8 @@ def _failure(
     message: str,
     residuals: tuple[float, ...] = (),
 ) -> Solution:
+    if outcome is Outcome.LOAD:
+        message = "; ".join([message, *sag_sentences(balance)])
     nowhere = np.full((balance.harmonics.rows, len(balance.clearances)), np.nan)
     return _solution(balance, speed, nowhere, outcome, message, residuals)
 

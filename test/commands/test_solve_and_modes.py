@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
-from sfd_hbm_ros.machine import override, read_machine
+from sfd_hbm_ros.machine import override, override_all, read_machine
+from sfd_hbm_ros.rotor import assemble
 
 from .studies import without_progress
 
@@ -42,6 +43,9 @@ def test_solve_prints_what_the_library_computes():
         "harmonics",
         "truncation_error",
         "dampers",
+        "greatest_vibration",
+        "sag",
+        "others",
     ]
     assert printed["speed_rpm"] == pytest.approx(3900.0, rel=1e-15)
     assert printed["converged"] is True
@@ -96,6 +100,54 @@ def test_no_solution_is_status_1_and_one_sentence():
     assert printed["dampers"]["damper_1"]["eccentricity_max"] is None
 
 
+HEAVY = ["--harmonics", "1", "--set", "unbalance.disk_2.magnitude=5.039e-4"]
+
+
+def test_a_bistable_speed_says_so_and_lets_choose():
+    """At 4100 rpm the heavy rotor is low or high, by a run-up or after a coast-down."""
+    printed = json.loads(run("solve", PAPER, "--rpm", "4100", *HEAVY, "--json").stdout)
+    stable = [one for one in printed["others"] if one["stable"]]
+    assert printed["stable"]
+    [upper] = stable
+    near = ["--near", f"{upper['eccentricity_max']:.3f}"]
+    chosen = json.loads(run("solve", PAPER, "--rpm", "4100", *HEAVY, *near, "--json").stdout)
+    damper = chosen["dampers"]["damper_1"]
+    assert damper["eccentricity_max"] == pytest.approx(upper["eccentricity_max"], abs=1e-7)
+    lower = printed["dampers"]["damper_1"]["eccentricity_max"]
+    assert lower in [pytest.approx(one["eccentricity_max"], abs=1e-7) for one in chosen["others"]]
+    assert chosen["greatest_vibration"]["of"] == "disk_2"
+    assert chosen["greatest_vibration"]["vibration"] > 1e-3
+    text = run("solve", PAPER, "--rpm", "4100", *HEAVY).stdout
+    assert "bistable: " in text
+    assert f"another response, stable, has eccentricity {upper['eccentricity_max']:.4f}" in text
+    assert "greatest vibration of any disk 263.1 um zero to peak: disk_2" in text
+
+
+def test_where_there_is_one_response_nothing_is_said_of_others():
+    done = run("solve", PAPER, "--rpm", "3000", *HEAVY)
+    assert "bistable" not in done.stdout
+    assert "another response" not in done.stdout
+
+
+def test_sag_beyond_the_clearance_is_told_with_its_number():
+    """As the uncondensed rotor has it on its springs alone."""
+    soft = ["--set", "gravity=true", "--set", "dampers.damper_1.centering_stiffness=2e4"]
+    machine = override_all(
+        read_machine(PAPER), {"gravity": True, "dampers.damper_1.centering_stiffness": 2e4}
+    )
+    model = assemble(machine)
+    at_rest = np.linalg.solve(model.K, model.static_force)[model.journals[0]]
+    sag = np.linalg.norm(at_rest) / 2.54e-4
+    assert sag > 1.0
+    words = f"at rest damper_1 sags by {sag:.2f} of its clearance ("
+    assert words in run("solve", PAPER, "--rpm", "3800", "--harmonics", "3", *soft).stdout
+    still = ["--set", "unbalance.disk_2.magnitude=0"]
+    assert words in run("solve", PAPER, "--rpm", "3000", *soft, *still).stderr
+    printed = json.loads(run("solve", PAPER, "--rpm", "3800", *soft, "--json").stdout)
+    assert printed["sag"]["damper_1"] == pytest.approx(sag, rel=1e-6)
+    assert " of its clearance (" not in run("solve", PAPER, "--rpm", "3800").stdout
+
+
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
@@ -104,6 +156,10 @@ def test_no_solution_is_status_1_and_one_sentence():
         (("solve", PAPER), "sfd_hbm solve: the following arguments are required: --rpm"),
         (("solve", PAPER, "--rpm", "-3"), "sfd_hbm: --rpm -3: must be a finite speed above 0 rpm"),
         (("solve", PAPER, "--rpm", "nan"), "sfd_hbm: --rpm nan: must be a finite speed above 0"),
+        (
+            ("solve", PAPER, "--rpm", "9", "--near", "1.5"),
+            "sfd_hbm: --near 1.5: must be an eccentricity of at least 0, below 1",
+        ),
         (("solve", PAPER, "--rpm", "fast"), "sfd_hbm solve: argument --rpm: invalid float value"),
         (("modes", PAPER, "--rpm", "-1"), "sfd_hbm: --rpm -1: must be a finite speed of at least"),
         (("solve", "none.yaml", "--rpm", "9"), "sfd_hbm: none.yaml: cannot be read: No such file"),

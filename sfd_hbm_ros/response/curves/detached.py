@@ -60,7 +60,7 @@ def detached_branches(
     """
     found: list[CurveBranch] = []
     for speed in _speeds(curve.balance, lowest, highest, speeds):
-        for x in _responses(curve.balance, speed, options, progress):
+        for x in responses_over_unbalance(curve.balance, speed, options, progress):
             if _known((*curve.branches, *found), curve, speed, x):
                 continue
             bounds = lowest, highest
@@ -76,13 +76,13 @@ def _speeds(balance: HarmonicBalance, lowest: float, highest: float, number: int
     return np.sort(np.concatenate([np.linspace(lowest, highest, number), inside]))
 
 
-def _responses(
+def responses_over_unbalance(
     balance: HarmonicBalance,
     speed: float,
     options: ContinuationOptions | None,
     progress: Progress | None,
 ) -> Iterator[Array]:
-    """Responses at a speed that one branch in the unbalance connects."""
+    """Coefficients (n,) of the responses at a speed that one branch in the unbalance connects."""
     equations = balance.at(speed)
     static = np.zeros_like(equations.force)
     static[0] = equations.force[0]
