@@ -104,7 +104,7 @@ class Start(NamedTuple):
 
 def started(script: str, folder: Path, **environment: str) -> Start | None:
     """Run a script in a process of its own; nothing where it lacks a module, such as rclpy."""
-    given = {"PYTHONPATH": str(folder), "OPENBLAS_NUM_THREADS": "1"} | environment
+    given = {"PYTHONPATH": str(folder)} | environment
     command = [sys.executable, "-c", WITHOUT_COVERAGE + script + REPORT]
     done = subprocess.run(
         command, env=os.environ | given, cwd=ROOT, capture_output=True, text=True

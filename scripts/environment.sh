@@ -103,7 +103,5 @@ fi
 
 # Neither script is to be seen, or disturbed, by ROS on other machines.
 export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST
-# The matrices are small: more threads only take processor time from one another.
-export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
 # rclpy writes its log below HOME and does not start without one.
 [ -n "${HOME:-}" ] || export ROS_LOG_DIR=${ROS_LOG_DIR:-$root/log/ros}

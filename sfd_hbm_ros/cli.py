@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import NoReturn
 
 from sfd_hbm_ros.commands.progress import at_work
+from sfd_hbm_ros.threads import one_blas_thread
 
 VERBS = {
     "solve": "The response at one speed: eccentricity and harmonics of every damper.",
@@ -50,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             options.set_defaults(run=verb.run)
     chosen = parser.parse_args(given)
     try:
-        with at_work(chosen.verb), warnings.catch_warnings():
+        with at_work(chosen.verb), warnings.catch_warnings(), one_blas_thread:
             # where numbers overflow, the outcome tells
             warnings.simplefilter("ignore", RuntimeWarning)
             chosen.run(chosen)

@@ -19,6 +19,7 @@ from sfd_hbm_ros.hbm.options import DEFAULTS, ContinuationOptions, NewtonOptions
 from sfd_hbm_ros.hbm.points import Point
 from sfd_hbm_ros.hbm.time_limit import check_time_limit
 from sfd_hbm_ros.rotor import ResonanceError
+from sfd_hbm_ros.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 
@@ -73,6 +74,7 @@ class Corrector:
         self._bounds = bounds
         self.scale: Array = np.append(family.at(start).scale, bounds[1] - bounds[0])
 
+    @one_blas_thread
     def known(self, x: Array, value: float, direction: Array, iterations: int = 0) -> Point:
         """A known solution with the tangent that has a positive part along `direction`."""
         equations = self._at(value)
@@ -95,6 +97,7 @@ class Corrector:
         """Distance of a point from another along the other's tangent, as `corrected` takes it."""
         return float(point.tangent @ (self.scaled(other) - self.scaled(point)))
 
+    @one_blas_thread
     def corrected(self, point: Point, step: float, others: Sequence[Point] = ()) -> Point | None:
         """The point of the branch at a distance `step` along the tangent of another, if any.
 
@@ -103,6 +106,7 @@ class Corrector:
         found = self._sought(point, step, others)
         return found if isinstance(found, Point) else None
 
+    @one_blas_thread
     def following(self, point: Point, step: float, others: Sequence[Point] = ()) -> Point | None:
         """As `corrected`, or the point at an end of the range if that comes before, if any."""
         found = self._sought(point, step, others)

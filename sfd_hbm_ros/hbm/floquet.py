@@ -19,6 +19,7 @@ from sfd_hbm_ros.hbm.balance import HarmonicBalance
 from sfd_hbm_ros.hbm.monodromy import monodromy, rates
 from sfd_hbm_ros.hbm.solution import Solution
 from sfd_hbm_ros.rotor import RotorModel, is_axisymmetric, reduce_model
+from sfd_hbm_ros.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -83,6 +84,7 @@ class Stability:
         return Instability.FOLD if leading.real > 0 else Instability.PERIOD_DOUBLING
 
 
+@one_blas_thread
 def stability(balance: HarmonicBalance, solution: Solution) -> Stability:
     """Floquet stability of a converged solution.
 
@@ -111,6 +113,7 @@ def stability(balance: HarmonicBalance, solution: Solution) -> Stability:
     )
 
 
+@one_blas_thread
 def settled_stability(
     monodromy_in: Callable[[int], Array], phase_is_free: bool = False
 ) -> Stability:

@@ -18,6 +18,7 @@ from sfd_hbm_ros.hbm.newton import newton
 from sfd_hbm_ros.hbm.options import OptionError
 from sfd_hbm_ros.hbm.solve import solve_equations
 from sfd_hbm_ros.machine import Machine
+from sfd_hbm_ros.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 
@@ -79,6 +80,7 @@ class SelectedBalance:
             self._balances[group] = self.full.with_harmonics(self.trial.only(group))
         return self._balances[group]
 
+    @one_blas_thread
     def neglect(self, group: tuple[int, ...], speed: float, x: Array) -> Neglect:
         """What a group's solution x at a speed [rad/s] leaves out; the trial group's, nothing."""
         if group == self.trial.multiples:
@@ -116,6 +118,7 @@ class SelectedBalance:
         keep |= np.isin(self.trial.multiples, self.least)
         return tuple(np.array(self.trial.multiples)[keep].tolist())
 
+    @one_blas_thread
     def solve(self, speed: float) -> tuple[tuple[int, ...], Array, Neglect]:
         """Group, coefficients and what is neglected of the response at a speed [rad/s].
 

@@ -10,6 +10,7 @@ from sfd_hbm_ros.hbm.newton import NewtonResult, Outcome, newton
 from sfd_hbm_ros.hbm.options import DEFAULTS, ContinuationOptions, NewtonOptions
 from sfd_hbm_ros.hbm.solution import JournalMotion, Solution
 from sfd_hbm_ros.rotor import ResonanceError
+from sfd_hbm_ros.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 
@@ -19,6 +20,7 @@ _BOUNDLESS = 1e6  # sag, of the clearance, that only rounding keeps from being i
 _GUESS_LIMIT = 0.7  # eccentricity to which a linear guess is scaled down
 
 
+@one_blas_thread
 def solve(
     balance: HarmonicBalance,
     speed: float,
@@ -82,6 +84,7 @@ def _solve(
     return _solution(balance, speed, result.x, result.outcome, message, result.residuals)
 
 
+@one_blas_thread
 def solve_equations(
     equations: Equations, options: NewtonOptions = DEFAULTS
 ) -> tuple[NewtonResult, str]:

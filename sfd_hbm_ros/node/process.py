@@ -15,6 +15,7 @@ from rclpy.task import Future
 from rclpy.utilities import get_default_context, try_shutdown
 
 from sfd_hbm_ros.machine import MachineError
+from sfd_hbm_ros.threads import one_blas_thread
 
 N = TypeVar("N", bound=Node)
 
@@ -41,7 +42,7 @@ def run(name: str, make: Callable[[], N], work: Callable[[N], int]) -> int:
         for wrong arguments or parameters.
     """
     try:
-        with _interrupts_left_to_rclpy():
+        with one_blas_thread, _interrupts_left_to_rclpy():
             try:
                 node = _made(name, make)
                 return BAD_INPUT if node is None else work(node)

@@ -13,6 +13,7 @@ from sfd_hbm_ros.rotor.frames import Whirl, is_axisymmetric
 from sfd_hbm_ros.rotor.model import RotorModel
 from sfd_hbm_ros.rotor.modes import HELD, SHIFT
 from sfd_hbm_ros.rotor.spectrum import largest_eigenpairs
+from sfd_hbm_ros.threads import one_blas_thread
 
 _REACH = 10.0  # multiple of the first critical speed up to which they are found
 _FIRST = 16  # number of modes that are sought first
@@ -34,6 +35,7 @@ class CriticalSpeed:
     direction: Direction
 
 
+@one_blas_thread
 def critical_speeds(model: RotorModel) -> list[CriticalSpeed]:
     """Return the critical speeds up to ten times the first, in rising order.
 

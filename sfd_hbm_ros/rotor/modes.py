@@ -16,6 +16,7 @@ from sfd_hbm_ros.rotor.directions import Direction, direction, senses
 from sfd_hbm_ros.rotor.frames import Whirl, is_axisymmetric
 from sfd_hbm_ros.rotor.model import RotorModel
 from sfd_hbm_ros.rotor.spectrum import largest_eigenpairs, largest_eigenvalues
+from sfd_hbm_ros.threads import one_blas_thread
 
 SHIFT = 1.0
 """Eigenvalues are sought by the reciprocal of their distance from here [rad/s]: the low ones then
@@ -44,6 +45,7 @@ class WhirlMode:
     direction: Direction
 
 
+@one_blas_thread
 def whirl_modes(model: RotorModel, speed: float) -> list[WhirlMode]:
     """Return the whirl modes at a speed, in rising order of frequency.
 
@@ -86,6 +88,7 @@ def whirl_modes(model: RotorModel, speed: float) -> list[WhirlMode]:
     ]
 
 
+@one_blas_thread
 def campbell(model: RotorModel, speeds: Iterable[float]) -> list[list[WhirlMode]]:
     """Return the data of a Campbell diagram.
 

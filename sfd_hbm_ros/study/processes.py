@@ -12,10 +12,9 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from sfd_hbm_ros.study.task import Outcome, Task
+from sfd_hbm_ros.threads import one_blas_thread
 
 Variants = Mapping[int, Sequence[float]]
-
-_THREADS = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 def on_processes(
@@ -56,7 +55,7 @@ def _until_broken(task: Task, variants: Variants, processes: int) -> Iterator[tu
     pool = ProcessPoolExecutor(processes, context, _begin, (theirs,))
     with pool, ours, suppress(BrokenProcessPool):  # `ours` closes first: see `_begin`
         numbers: dict[Future[Outcome], int] = {}
-        with _to_be_inherited():
+        with _interrupts_blocked():
             for number, values in variants.items():
                 numbers[pool.submit(task.outcome, values)] = number
         theirs.close()
@@ -65,7 +64,7 @@ def _until_broken(task: Task, variants: Variants, processes: int) -> Iterator[tu
 
 
 def _begin(parent: "Connection[Any, Any]") -> None:
-    """Make a worker process end at once when the other end of a pipe closes.
+    """Give a worker process one BLAS thread, and end it when the other end of a pipe closes.
 
     That happens when nobody waits for its work any more, and when the parent has been killed.
     """
@@ -76,20 +75,14 @@ def _begin(parent: "Connection[Any, Any]") -> None:
         os._exit(0)
 
     threading.Thread(target=end, daemon=True).start()
+    one_blas_thread.__enter__()  # for good
 
 
 @contextmanager
-def _to_be_inherited() -> Iterator[None]:
-    """Give processes started meanwhile one BLAS thread each, and leave Ctrl-C to their parent."""
-    before = {name: os.environ.get(name) for name in _THREADS}
-    os.environ.update(_THREADS)
+def _interrupts_blocked() -> Iterator[None]:
+    """Leave Ctrl-C to the parent of processes that are started meanwhile."""
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value

@@ -15,6 +15,7 @@ from sfd_hbm_ros.response.curves.curve import ResponseCurve, response_curve
 from sfd_hbm_ros.response.curves.jumps import Direction
 from sfd_hbm_ros.response.curves.summary import Summary
 from sfd_hbm_ros.response.errors import NoSolutionError
+from sfd_hbm_ros.threads import one_blas_thread
 
 
 @dataclass(frozen=True)
@@ -86,6 +87,7 @@ class Task:
     highest: float
     harmonics: HarmonicsOptions
 
+    @one_blas_thread
     def outcome(self, values: Sequence[float]) -> Outcome:
         """Compute the variant that has these values of the entries; nothing is raised."""
         started = time.perf_counter()

@@ -16,7 +16,6 @@ from typing import Any
 from sfd_hbm_ros.node.worker.curve_job import CurveJob, CurveResult, Failure
 
 _MODULE = "sfd_hbm_ros.node.worker.process"
-_THREADS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 _GONE = None  # what the queue holds after the last message
 
 Payload = int | CurveResult | Failure
@@ -123,7 +122,7 @@ def _start(descriptor: int) -> subprocess.Popen[bytes]:
     return subprocess.Popen(
         [sys.executable, "-P", "-m", _MODULE, str(descriptor)],
         stdin=subprocess.DEVNULL,
-        env=os.environ | _THREADS | {"PYTHONPATH": path},
+        env=os.environ | {"PYTHONPATH": path},
         pass_fds=[descriptor],
         # The terminal's Ctrl-C is for the node alone. Should the node go while the process is
         # stopped, the kernel ends it: a group of its own that is stopped and has no parent left.

@@ -20,6 +20,7 @@ from sfd_hbm_ros.kernels import load_kernels
 from sfd_hbm_ros.machine import MachineError
 from sfd_hbm_ros.node.worker.curve_job import CurveJob, Failure, compute
 from sfd_hbm_ros.response.errors import NoSolutionError
+from sfd_hbm_ros.threads import one_blas_thread
 
 _NICE = 10  # live predictions come first
 
@@ -94,7 +95,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that started it will end it
     os.nice(_NICE)
     load_kernels()
-    with suppress(ConnectionError):
+    with one_blas_thread, suppress(ConnectionError):
         serve(Connection(int(sys.argv[1])))
 
 

@@ -21,6 +21,7 @@ from sfd_hbm_ros.hbm.truncation import BranchPlace, HarmonicsOptions
 from sfd_hbm_ros.machine import Machine
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.judged import CurveBranch, Progress
+from sfd_hbm_ros.threads import one_blas_thread
 
 _ROUGH = ContinuationOptions(first_step=0.05, longest_step=0.15, turning=0.6)
 _MARGIN = 0.5  # of the tolerance that is kept there, as the worst may lie between two points
@@ -29,6 +30,7 @@ _LOOKED_AT = 24  # points of a branch, and that of the greatest eccentricity, in
 FamilyOf = Callable[[HarmonicBalance], MachineFamily]
 
 
+@one_blas_thread
 def balance_for_speeds(
     machine: Machine,
     lowest: float,
@@ -52,6 +54,7 @@ def balance_for_speeds(
     return _balance(machine, SpeedFamily, (lowest, highest), options, progress)
 
 
+@one_blas_thread
 def balance_for_entry(
     machine: Machine,
     speed: float,
@@ -65,6 +68,7 @@ def balance_for_entry(
     return _balance(machine, family_of, bounds, options, progress)
 
 
+@one_blas_thread
 def curve_error(curve: ResponseCurve) -> float:
     """Greatest distance of a curve's periodic branches from those of all harmonics.
 

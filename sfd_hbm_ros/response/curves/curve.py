@@ -17,6 +17,7 @@ from sfd_hbm_ros.hbm.selection import SelectedBalance
 from sfd_hbm_ros.response.curves.forks import Fork, leaving_branches
 from sfd_hbm_ros.response.curves.judged import CurveBranch, Progress, judged
 from sfd_hbm_ros.response.errors import NoSolutionError
+from sfd_hbm_ros.threads import one_blas_thread
 from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
@@ -74,6 +75,7 @@ class ResponseCurve:
         ]
 
 
+@one_blas_thread
 def response_curve(
     balance: HarmonicBalance,
     lowest: float,
@@ -104,6 +106,7 @@ def response_curve(
     return _curve(family, lowest, highest, options, progress, branch_from)
 
 
+@one_blas_thread
 def selected_curve(
     balance: SelectedBalance,
     lowest: float,
@@ -128,6 +131,7 @@ def selected_curve(
     return _curve(family, lowest, highest, options, progress, branch_from)
 
 
+@one_blas_thread
 def parameter_curve(
     balance: HarmonicBalance,
     speed: float,

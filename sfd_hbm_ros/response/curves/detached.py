@@ -22,12 +22,14 @@ from sfd_hbm_ros.response.curves.judged import CurveBranch, Progress, judged
 from sfd_hbm_ros.response.curves.jumps import solutions_at
 from sfd_hbm_ros.response.responses import SAME, distance
 from sfd_hbm_ros.rotor import critical_speeds, hold_journals
+from sfd_hbm_ros.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 
 _LEAST, _MOST = 0.3, 4.0  # parts of the unbalance between which it is followed
 
 
+@one_blas_thread
 def detached_branches(
     curve: ResponseCurve,
     lowest: float,

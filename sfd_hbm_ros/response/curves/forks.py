@@ -17,6 +17,7 @@ from sfd_hbm_ros.hbm.solve import solution_at
 from sfd_hbm_ros.hbm.switching import SwitchedBranch, switch
 from sfd_hbm_ros.response.curves.judged import CurveBranch, Progress, judged
 from sfd_hbm_ros.response.responses import Response, distance
+from sfd_hbm_ros.threads import one_blas_thread
 
 _PERIODS = {Instability.PERIOD_DOUBLING: 2, Instability.SYMMETRY_BREAKING: 1}
 _MOST_REVOLUTIONS = 2  # of a period: those of four belong to a cascade that ends in chaos
@@ -58,6 +59,7 @@ class _Start(NamedTuple):
         return self.branch, self.point
 
 
+@one_blas_thread
 def leaving_branches(
     family: MachineFamily,
     branches: Sequence[CurveBranch],

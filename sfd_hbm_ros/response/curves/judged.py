@@ -17,6 +17,7 @@ from sfd_hbm_ros.hbm.points import Point, Stop
 from sfd_hbm_ros.hbm.quasi_periodic_branch import QuasiPeriodicBranch
 from sfd_hbm_ros.hbm.switching import breaks_symmetry
 from sfd_hbm_ros.response.responses import Response, response_at, stability_of
+from sfd_hbm_ros.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -102,6 +103,7 @@ class _Judged(NamedTuple):
     fold: bool
 
 
+@one_blas_thread
 def judged(branch: Branch, progress: Progress | None = None) -> CurveBranch:
     """Follow a branch to its end, with its folds and the stability of every point.
 

@@ -28,6 +28,7 @@ from sfd_hbm_ros.response.responses import (
     with_unknowns,
 )
 from sfd_hbm_ros.rotor import ResonanceError
+from sfd_hbm_ros.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 
@@ -67,11 +68,13 @@ class Peak:
     amplification_factor: float | None
 
 
+@one_blas_thread
 def damper_peaks(curve: ResponseCurve) -> list[Peak]:
     """Peaks of the vibration of every damper's journal, in rising order of the parameter."""
     return _peaks(curve, curve.dampers, lambda _, response: vibrations_of_dampers(response))
 
 
+@one_blas_thread
 def disk_peaks(curve: ResponseCurve) -> list[Peak]:
     """Peaks of the vibration of every disk over the speed, in rising order of it.
 

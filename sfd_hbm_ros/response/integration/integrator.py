@@ -12,6 +12,7 @@ from sfd_hbm_ros.response.integration.options import DEFAULTS, SAMPLES, Integrat
 from sfd_hbm_ros.response.integration.ramp import Ramp
 from sfd_hbm_ros.response.integration.step import Motion, Step
 from sfd_hbm_ros.rotor import Condensation, reduce_model
+from sfd_hbm_ros.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 
@@ -89,6 +90,7 @@ class Integrator:
         self._times = np.sort(np.concatenate([samples, self.radau.nodes]))
         self._is_node = np.isin(self._times, self.radau.nodes)
 
+    @one_blas_thread
     def start(self, solution: Solution) -> State:
         """The motion of a harmonic balance solution."""
         orders, w = solution.harmonics.orders, solution.speed
@@ -103,6 +105,7 @@ class Integrator:
             second.reshape(*angle.shape, -1),
         )
 
+    @one_blas_thread
     def revolution(self, ramp: Ramp, number: int, state: State) -> tuple[State, Array]:
         """Integrate over one revolution of a run; they are counted from 0.
 

@@ -11,6 +11,7 @@ from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.response.integration.integrator import ClearanceError, Integrator, State
 from sfd_hbm_ros.response.integration.options import DEFAULTS, IntegrationOptions
 from sfd_hbm_ros.response.integration.ramp import Ramp
+from sfd_hbm_ros.threads import one_blas_thread
 from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
@@ -62,6 +63,7 @@ class Transient:
         return np.arange(0.5, self.ramp.revolutions)
 
 
+@one_blas_thread
 def simulate(
     balance: HarmonicBalance,
     start: float,
@@ -101,6 +103,7 @@ def simulate(
     return run(integrator, ramp, integrator.start(solution), progress)
 
 
+@one_blas_thread
 def run(
     integrator: Integrator, ramp: Ramp, state: State, progress: Progress | None = None
 ) -> Transient:

@@ -25,6 +25,7 @@ from sfd_hbm_ros.response.tracking.operating_point import OperatingPoint, begun,
 from sfd_hbm_ros.response.tracking.pursuit import pursued, travelled
 from sfd_hbm_ros.response.tracking.tracked import BranchName, Tracked, branch_name, no_solution
 from sfd_hbm_ros.rotor import ResonanceError
+from sfd_hbm_ros.threads import one_blas_thread
 
 _STUCK = 2  # searches broken off in a row, after which their start is given up
 
@@ -87,12 +88,14 @@ class Tracker:
         """Where on the curve the machine is; None where that is not known."""
         return self._known.last.place if self._known.last else None
 
+    @one_blas_thread
     def change(self, balance: HarmonicBalance) -> None:
         """Go on with other loads, parameters or harmonics of the machine."""
         self._guide = Guide(balance, self._guide.curve)
         self._beside = None
         self._learn(origin=None)
 
+    @one_blas_thread
     def adopt(self, curve: ResponseCurve) -> None:
         """Be guided by a curve over the speed, current or outdated, in place of any other."""
         self._guide = guide = Guide(self._guide.balance, curve)
@@ -102,6 +105,7 @@ class Tracker:
             stable = [place for place in guide.places(self._known.origin) if place.stable]
             self._learn(settled=self.settled or len(stable) == 1)
 
+    @one_blas_thread
     def settle(self, solution: Solution) -> None:
         """Know that the machine is on a response, which was measured or restored.
 
@@ -120,6 +124,7 @@ class Tracker:
         self._known, self._beside = _Known(), None
         self._excursion = Excursion()
 
+    @one_blas_thread
     def predict(self, speed: float, time: float = math.nan) -> Tracked:
         """Follow the machine to a speed.
 
