@@ -12,12 +12,12 @@ from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from sensor_msgs.msg import PointCloud2
+from sensor_msgs.msg import JointState, PointCloud2
 from std_srvs.srv import Trigger
 
 from sfd_hbm_ros.hbm import Solution
 from sfd_hbm_ros.node.diagnostics import Status
-from sfd_hbm_ros.node.messages.curve import response_curve_message
+from sfd_hbm_ros.node.messages.curve import curve_arrays_message, response_curve_message
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.speed_range import SpeedRange, outside
@@ -86,6 +86,7 @@ class Curves:
         self._range = SpeedRange()
         self._outdated_since = self._loaded_at = self._judged_at = self._held_at = -math.inf
         self._publisher = node.create_publisher(PointCloud2, "~/response_curve", LATCHED)
+        self._arrays = node.create_publisher(JointState, "~/response_curve_arrays", LATCHED)
         node.create_service(Trigger, "~/recompute", self._recompute)
         node.create_timer(_POLL, self._poll, clock=Clock(clock_type=ClockType.STEADY_TIME))
         operation.after_change.append(self.look)
@@ -108,6 +109,12 @@ class Curves:
         outdated = self.result.job.revision != self.revision
         return time.monotonic() - self._outdated_since if outdated else 0.0
 
+    @property
+    def revisions(self) -> dict[str, str]:
+        """The revision of the machine, and that of the curve: 0 while there is none."""
+        of_curve = self.result.job.revision if self.result else 0
+        return {"revision": str(self.revision), "curve_revision": str(of_curve)}
+
     def look(self) -> None:
         """Note what curve is wanted now."""
         job, now = self._job(), time.monotonic()
@@ -126,7 +133,7 @@ class Curves:
 
     def added_to(self, status: Status) -> Status:
         """Return the status of the model with how its response curve fares."""
-        values = {**status.values, "curve: age [s]": f"{self.age:.3g}"}
+        values = {**status.values, "curve: age [s]": f"{self.age:.3g}", **self.revisions}
         if self.result is not None:
             values["curve: computed in [s]"] = f"{self.result.seconds:.3g}"
         message = status.message
@@ -289,8 +296,12 @@ class Curves:
         self._operation.predict_again()
 
     def _publish(self, branches: Sequence[CurveBranch], detached: Sequence[CurveBranch]) -> None:
-        now = self._node.get_clock().now()
-        self._publisher.publish(response_curve_message(now, branches, detached))
+        """Publish the branches of the newest result, or none of them."""
+        assert self.result is not None
+        now, revision = self._node.get_clock().now(), self.result.job.revision
+        dampers = self.result.curve.dampers
+        self._publisher.publish(response_curve_message(now, branches, detached, dampers, revision))
+        self._arrays.publish(curve_arrays_message(now, branches, detached, revision))
 
     def _judge(self, now: float) -> None:
         """Find out whether the curve tells of the machine as it is now."""

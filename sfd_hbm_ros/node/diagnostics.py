@@ -61,6 +61,7 @@ def model_status(state: str, problem: str, file: str, model: Model | None) -> St
     """Return how the machine's model fares; a problem is why there is none."""
     values = {"state": state, "machine_file": file}
     if model is not None:
+        values["machine"] = model.machine.name
         values["dampers"] = ", ".join(damper.name for damper in model.machine.dampers)
         values["harmonics"] = str(model.harmonics.highest)
     level = Level.ERROR if problem else Level.OK

@@ -208,7 +208,7 @@ class Operation:
         header = Time(nanoseconds=stamp), self._parameters["frame_id"]
         journals = prediction.journals
         self._eccentricity.publish(
-            messages.eccentricity_message(*header, journals, prediction.others)
+            messages.eccentricity_message(*header, journals, prediction.others, speed)
         )
         self._harmonics.publish(messages.harmonics_message(*header, journals))
         for call in self.after_prediction:

@@ -160,7 +160,7 @@ class Model:
             When it was measured [s].
         """
         if speed == 0.0:
-            return Prediction(speed, self._unknown(), False, AT_REST)
+            return Prediction(speed, self.unknown(), False, AT_REST)
         start = time.perf_counter()
         try:
             # Where numbers overflow there is no solution: that is said, not warned about.
@@ -168,7 +168,7 @@ class Model:
                 self.balance()
         except Exception as error:  # a machine beyond what numbers can hold
             reason = f"the solver gave up: {type(error).__name__}: {error}"
-            return Prediction(speed, self._unknown(), True, reason)
+            return Prediction(speed, self.unknown(), True, reason)
         tracked = self.tracker.predict(speed, measured_at)
         solution = tracked.solution
         begun = solution.converged or solution.residuals
@@ -204,7 +204,7 @@ class Model:
         self._balance = HarmonicBalance(self.loaded, self.harmonics)
         return self._balance
 
-    def _unknown(self) -> dict[str, JournalMotion]:
+    def unknown(self) -> dict[str, JournalMotion]:
         """Return motions that are not known."""
         return {
             damper.name: JournalMotion(

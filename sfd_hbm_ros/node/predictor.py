@@ -140,14 +140,20 @@ class Predictor(LeanNode):
         self._reporter.close()
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
-        """Set parameters together, or none for a reason; both parameter services end here."""
+        """Set parameters together, or none for a reason; both parameter services end here.
+
+        Where there is a machine, the reason of what is done is the revision of the machine then.
+        """
         try:
             converted = self._known.converted(parameter_list)
         except ParameterError as error:
             return SetParametersResult(successful=False, reason=str(error))
-        if not converted:  # as all are as they were
-            return SetParametersResult(successful=True)
-        return super().set_parameters_atomically(converted)
+        done = SetParametersResult(successful=True)  # where all are as they were
+        if converted:
+            done = super().set_parameters_atomically(converted)
+        if done.successful and self._operation.model is not None:
+            done.reason = f"revision {self._curves.revision}"
+        return done
 
     def caught(self, error: Exception) -> None:
         """Count an exception that a callback raised, and say which."""
@@ -156,11 +162,8 @@ class Predictor(LeanNode):
         self.get_logger().error(f"caught {text}", throttle_duration_sec=_LOG_PAUSE)
 
     def _hardware(self) -> str:
-        """Return the name of the machine."""
-        model = self._operation.model
-        if model is None:
-            return ""
-        return model.machine.name or Path(self._known["machine_file"]).stem
+        """Return the name of the machine's file, in every state: its title may be a sentence."""
+        return Path(self._known["machine_file"]).stem
 
     def _statuses(self) -> list[diagnostics.Status]:
         """Return how the node fares."""

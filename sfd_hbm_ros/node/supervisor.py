@@ -60,21 +60,26 @@ class Supervisor(Node):
         say = self.get_logger()
         try:
             self._wait(self._predictor_found, "the predictor")
-            self.set_unbalance()
+            revision = self.set_unbalance()
             changed = self.get_clock().now()
             say.info(f"{self.station} now has {self.magnitude:g} kg m at {self.phase:g} rad")
             for name, value in self.ask(changed).items():
                 say.info(f"at {self.rpm:g} rpm {name} would be {value:.3f} of the clearance")
-            self._wait(lambda: self._curve_is_of(changed), "the new response curve")
-            say.info(f"the new response curve has {self._curve[0].width} points")
+            self._wait(lambda: self._curve_revision() >= revision, "its response curve")
+            say.info(f"its response curve has {self._curve[0].width} points")
             say.info(f"the alarm: {self.acknowledge()}")
         except RuntimeError as error:
             say.error(str(error))
             return 1
         return 0
 
-    def set_unbalance(self) -> None:
+    def set_unbalance(self) -> int:
         """Set magnitude and phase together: both, or neither for a reason.
+
+        Returns
+        -------
+        The revision of the machine with them, which its response curve will bear. Where it had
+        them before, that is the curve which is there, or on its way.
 
         Raises
         ------
@@ -89,38 +94,44 @@ class Supervisor(Node):
         result = self._result(self._setter.set_parameters_atomically(values)).result
         if not result.successful:
             raise RuntimeError(f"the unbalance is refused: {result.reason}")
+        _, _, revision = result.reason.partition("revision ")
+        if not revision:
+            raise RuntimeError("the predictor has no machine: it is not configured")
+        return int(revision)
 
     def ask(self, stamp: Time) -> dict[str, float]:
         """Return the eccentricities at another speed; the answer has the question's stamp.
 
         Where the machine has just changed, the answer waits until the new curve is there.
+
+        Raises
+        ------
+        RuntimeError
+            If there is none, for a reason.
         """
         header = Header(stamp=stamp.to_msg())
         self._question.publish(JointState(header=header, velocity=[self.rpm * RPM]))
         self._wait(
             lambda: self._answer and self._answer[0].header.stamp == header.stamp, "an answer"
         )
-        return dict(zip(self._answer[0].name, self._answer[0].position, strict=True))
+        answer = dict(zip(self._answer[0].name, self._answer[0].position, strict=True))
+        for name in answer:
+            if name.startswith("reason: "):
+                raise RuntimeError(f"there is no answer, as {name.removeprefix('reason: ')}")
+        return answer
 
     def acknowledge(self) -> str:
         """Acknowledge the alarm, and return what the predictor says to it."""
         message: str = self._result(self._acknowledge.call_async(Trigger.Request())).message
         return message
 
-    def _curve_is_of(self, changed: Time) -> bool:
-        """Return whether the curve is of the machine as it was changed at some time.
-
-        A curve that was nearly done then may come after the change and be of the machine before.
-        The warning tells how long the curve has not been that of the machine: its model's age.
-        """
-        if not (self._curve and self._warning):
-            return False
-        newer = all(
-            Time.from_msg(message.header.stamp) > changed
-            for message in (self._curve[0], self._warning[0])
-        )
-        values = {pair.key: pair.value for pair in self._warning[0].status[0].values}
-        return newer and float(values["model_age_s"]) == 0.0
+    def _curve_revision(self) -> int:
+        """Return the revision of the machine that the newest curve is of; 0 without a curve."""
+        if not (self._curve and self._curve[0].width):
+            return 0
+        cloud = self._curve[0]
+        [offset] = [field.offset for field in cloud.fields if field.name == "revision"]
+        return int.from_bytes(bytes(cloud.data[offset : offset + 4]), "little")
 
     def _predictor_found(self) -> bool:
         """Return whether nothing that is said to the predictor, or by it, is lost from now on."""

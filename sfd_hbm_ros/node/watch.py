@@ -129,7 +129,12 @@ class Watch:
         # Where no jump is seen, that all is well is not either.
         if self._curves.outside and not self.alarm.shelved_for(time.monotonic()):
             level = max(level, Level.WARN)
-        return replace(status, level=level, message=status.message + self._reservation(age))
+        return replace(
+            status,
+            level=level,
+            message=status.message + self._reservation(age),
+            values={**status.values, **self._curves.revisions},
+        )
 
     def _reservation(self, age: float) -> str:
         """Return why the warning is none, or under which reservation it stands."""

@@ -84,7 +84,7 @@ def test_equals_solve_from_the_last_solution(predictor):
         last = solved(speed, last=last)
         check(predictor.predict(speed), last)
     status = predictor.until_status("Solver", OK, "balance")
-    assert status.hardware_id == PAPER.name
+    assert status.hardware_id == "paper_rotor"
 
 
 def test_load_and_gravity(predictor):

@@ -9,6 +9,7 @@ from .graph import Remote  # first, as it skips the file without ROS
 # isort: split
 from .bistable import BOTH, LIGHT, RPM, UPPER_ONLY, begin, changed, orbits, settle_at
 
+OK = b"\x00"
 LIMIT = 120.0  # s
 UNBALANCE = "unbalance.disk_1.magnitude"
 
@@ -37,8 +38,25 @@ def test_all_steps_are_gone_through(predictor, start_node):
     [answered] = re.findall(r"damper_1/max would be (\S+) of the clearance", said)
     assert float(answered) == pytest.approx(single, abs=5e-4)
     assert "damper_1/other_branch/max would be nan" in said
-    assert re.search(r"the new response curve has \d+ points", said)
+    assert re.search(r"its response curve has \d+ points", said)
     assert "the alarm: " in said
+
+
+def test_what_is_set_already_needs_no_new_curve(predictor, start_node):
+    magnitude, phase = predictor.get(UNBALANCE, "unbalance.disk_1.phase")
+    given = f"magnitude:={magnitude}", f"phase:={phase}"
+    number = len(predictor.curves)
+    code, said = supervise(start_node, "station:=disk_1", *given)
+    assert code == 0, said
+    assert re.search(r"its response curve has \d+ points", said)
+    assert len(predictor.curves) == number
+    values = predictor.until_warning(OK, speed=UPPER_ONLY)
+    assert values["revision"] == values["curve_revision"]
+    assert predictor.set({UNBALANCE: magnitude}).reason == f"revision {values['revision']}"
+    changed = int(values["revision"]) + 1
+    assert predictor.set({UNBALANCE: 0.5 * LIGHT}).reason == f"revision {changed}"
+    values = predictor.until_warning(OK, "outdated", UPPER_ONLY)
+    assert int(values["revision"]) == changed > int(values["curve_revision"])
 
 
 @pytest.mark.parametrize(

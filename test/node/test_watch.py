@@ -20,7 +20,7 @@ from geometry_msgs.msg import PolygonStamped
 from std_srvs.srv import SetBool
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
-from sfd_hbm_ros.node.messages.curve import CURVE_POINT
+from sfd_hbm_ros.node.messages.curve import curve_point
 from sfd_hbm_ros.response.curves.curve import response_curve
 
 from .process import PAPER_ROTOR
@@ -146,7 +146,7 @@ def test_the_curve_is_that_of_the_library_and_waits_for_late_comers(predictor):
     predictor.graph.collect(PointCloud2, topic, late.append, LATCHED)
     predictor.graph.until(lambda: late, "the curve is latched")
     [message] = late
-    points = np.frombuffer(bytes(message.data), CURVE_POINT)
+    points = np.frombuffer(bytes(message.data), curve_point(["damper_1"]))
     machine = read_machine(PAPER_ROTOR)
     for path, value in UNBALANCE.items():
         machine = override(machine, path, value)
@@ -252,6 +252,30 @@ def test_orbit_comes_to_who_subscribes(predictor):
     radii = np.hypot(*np.transpose(points)) / clearance
     np.testing.assert_allclose(radii, eccentricity, rtol=1e-5)
     assert message.header.frame_id == "damper_1"
+
+
+def test_orbits_come_five_times_a_second_and_the_newest_at_last(predictor):
+    came: list[int] = []
+    topic = f"{predictor.name}/orbit"
+    predictor.graph.collect(
+        PolygonStamped, topic, lambda one: came.append(nanoseconds(one.header))
+    )
+    predictor.graph.until(
+        lambda: came, "an orbit comes", lambda: predictor.send(380.0, predictor.now())
+    )
+    came.clear()
+    begin = time.monotonic()
+    found = run(predictor, 3700.0, 3710.0, 4.0, part_predicted=0.0)
+    predictor.graph.until(lambda: came and came[-1] >= found[-1].stamp, "the newest comes")
+    assert len(came) <= 5.0 * (time.monotonic() - begin) + 1.0
+    assert len(came) < len(found)
+
+
+def test_the_speed_stands_beside_the_eccentricity(predictor):
+    stamp = predictor.now()
+    predictor.predict(380.0, stamp)
+    message = predictor.eccentricity[stamp]
+    assert list(message.velocity) == [380.0] * len(message.name)
 
 
 def test_inactive_it_says_that_nothing_is_predicted(predictor):

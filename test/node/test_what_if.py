@@ -63,6 +63,9 @@ def test_answers_are_journeys_from_the_present_state(predictor, what_if):
             (UPPER_ONLY, near(upper), NAN),
             middle,
         ]
+        assert [name for name in answer.name if name.startswith("reason: ")] == [
+            "reason: no journey along the response curve leads there"
+        ]
         assert predictor.predict(here)[0] == pytest.approx(before, rel=1e-9, nan_ok=True)
 
 
@@ -103,13 +106,18 @@ def test_questions_leave_room_for_predictions_and_too_many_are_refused(predictor
     ],
 )
 def test_bad_questions_are_refused_with_the_reason(predictor, what_if, velocity, reason):
-    what_if.send(predictor.now(), velocity=velocity)
+    stamp = predictor.now()
+    answer = what_if.ask(stamp, velocity=velocity)
+    assert any(name.startswith("reason: ") and reason in name for name in answer.name)
+    assert all(math.isnan(value) for value in answer.position)
     predictor.until_status("Inputs", WARN, reason)
 
 
 def test_an_inactive_node_refuses_questions(predictor, what_if):
     assert predictor.change_state("deactivate") == [True]
-    what_if.send(predictor.now(), velocity=[BOTH])
+    answer = what_if.ask(predictor.now(), velocity=[BOTH, UPPER_ONLY])
+    assert "reason: the node is not active" in answer.name
+    assert read(answer) == [(BOTH, NAN, NAN), (UPPER_ONLY, NAN, NAN)]
     predictor.until_status("Inputs", WARN, "the node is not active")
     assert predictor.change_state("activate") == [True]
     settle_at(predictor, UPPER_ONLY)

@@ -93,13 +93,16 @@ def speed_message(stamp: Time, speed: float, angle: float) -> JointState:
 
 
 def eccentricity_message(
-    stamp: Time, frame: str, journals: Journals, others: Journals
+    stamp: Time, frame: str, journals: Journals, others: Journals, speed: float
 ) -> JointState:
     """Return the eccentricities of all journals, of their clearances.
 
-    `others` are those on the other stable branch, empty where there is none.
+    `others` are those on the other stable branch, empty where there is none. The speed at which
+    they are [rad/s] stands beside each in `velocity`, as in the answers to what-if questions.
     """
-    return numbers_message(stamp, frame, dict(eccentricities(journals, others)))
+    message = numbers_message(stamp, frame, dict(eccentricities(journals, others)))
+    message.velocity = array("d", [speed] * len(message.name))
+    return message
 
 
 def harmonics_message(stamp: Time, frame: str, journals: Journals) -> JointState:

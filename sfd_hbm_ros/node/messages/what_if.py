@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from rclpy.time import Time
@@ -26,11 +26,14 @@ class Answer(NamedTuple):
         The speed [rad/s].
     journals, others : mapping of str to JournalMotion
         The journals on the machine's branch and on the other stable one, empty if there is none.
+    reason : str
+        Why nothing is known, where it is not.
     """
 
     speed: float
     journals: Journals
     others: Journals
+    reason: str = ""
 
 
 def read_what_if(message: JointState) -> list[float]:
@@ -51,17 +54,29 @@ def read_what_if(message: JointState) -> list[float]:
     return speeds
 
 
+def refusals(speeds: Sequence[float], journals: Journals, reason: str) -> list[Answer]:
+    """Return the answers to a question that is refused, of `MOST` speeds at most.
+
+    `journals` are unknown, and empty where there is no machine.
+    """
+    first, *others = speeds[:MOST] or [math.nan]
+    return [Answer(first, journals, {}, reason), *(Answer(one, journals, {}) for one in others)]
+
+
 def what_if_message(stamp: Time, frame: str, answers: Sequence[Answer]) -> JointState:
     """Return the eccentricities at speeds that were asked about, in the order of the request.
 
     The names are those of `eccentricity_message`, repeated for each speed, which stands beside
-    them in `velocity`.
+    them in `velocity`. Where nothing is known all are NaN, and one more says why: "reason: ...".
     """
-    rows = [
-        (name, value, answer.speed)
-        for answer in answers
-        for name, value in eccentricities(answer.journals, answer.others)
-    ]
+    rows = [(name, value, answer.speed) for answer in answers for name, value in _numbers(answer)]
     names, values, speeds = zip(*rows, strict=True)
     header = Header(stamp=stamp.to_msg(), frame_id=frame)
     return JointState(header=header, name=names, position=values, velocity=speeds)
+
+
+def _numbers(answer: Answer) -> Iterator[tuple[str, float]]:
+    """Yield the named numbers of one speed."""
+    yield from eccentricities(answer.journals, answer.others)
+    if answer.reason:
+        yield f"reason: {answer.reason}", math.nan

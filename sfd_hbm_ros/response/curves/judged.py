@@ -1,6 +1,6 @@
 """A branch with the stability of every point, and the points where that changes."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -83,12 +83,21 @@ class CurveBranch:
 
     def eccentricity(self, damper: str) -> Array:
         """Greatest eccentricity of a damper's orbit, (m,)."""
-        return np.array([one.journals[damper].eccentricity_max for one in self.solutions])
+        return self.eccentricities[damper]
+
+    @cached_property
+    def eccentricities(self) -> Mapping[str, Array]:
+        """Greatest eccentricity of every damper's orbit, (m,) each, by its name."""
+        return {
+            name: np.array([one.journals[name].eccentricity_max for one in self.solutions])
+            for name in self.solutions[0].journals
+        }
 
     @cached_property
     def worst_eccentricity(self) -> Array:
         """Greatest eccentricity of any damper, (m,)."""
-        return np.array([one.eccentricity_max for one in self.solutions])
+        worst: Array = np.max([*self.eccentricities.values()], axis=0)
+        return worst
 
 
 _STRIDE = 8  # of a quasi-periodic branch, from one point that is judged to the next

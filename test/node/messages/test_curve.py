@@ -13,7 +13,11 @@ from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import PointCloud2, PointField
 
 from sfd_hbm_ros.hbm import Harmonics, JournalMotion
-from sfd_hbm_ros.node.messages.curve import orbit_message, response_curve_message
+from sfd_hbm_ros.node.messages.curve import (
+    curve_arrays_message,
+    orbit_message,
+    response_curve_message,
+)
 from sfd_hbm_ros.node.worker.curve_job import CurveJob, CurveResult, compute
 
 from ...hbm.machines import random_machine
@@ -21,6 +25,7 @@ from ..graph import Time
 
 FORMATS = {
     PointField.FLOAT64: "d",
+    PointField.FLOAT32: "f",
     PointField.UINT32: "I",
     PointField.UINT16: "H",
     PointField.UINT8: "B",
@@ -29,8 +34,9 @@ STAMP = Time(nanoseconds=12_000_000_345)
 
 
 @cache
-def result() -> CurveResult:
-    [result] = compute(CurveJob(random_machine(2, elements=4), 1, 100.0, 600.0), lambda _: None)
+def result(dampers: int = 1) -> CurveResult:
+    machine = random_machine(2, dampers=dampers, elements=4)
+    [result] = compute(CurveJob(machine, 1, 100.0, 600.0), lambda _: None)
     return result
 
 
@@ -56,16 +62,18 @@ def read(cloud: PointCloud2) -> list[dict[str, float]]:
 
 
 def test_curve_without_branches_has_no_points():
-    message = sent(response_curve_message(STAMP, (), ()))
+    dampers = result().curve.dampers
+    message = sent(response_curve_message(STAMP, (), (), dampers, 7))
     assert (message.width, message.row_step, len(message.data)) == (0, 0, 0)
-    whole = response_curve_message(STAMP, result().curve.branches, ())
+    whole = response_curve_message(STAMP, result().curve.branches, (), dampers, 7)
     assert message.fields == whole.fields
 
 
 def test_every_point_of_a_curve_arrives():
     branches = result().curve.branches
-    cloud = sent(response_curve_message(STAMP, branches, ()))
+    cloud = sent(response_curve_message(STAMP, branches, (), result().curve.dampers, 7))
     assert (cloud.header.stamp.sec, cloud.header.stamp.nanosec) == (12, 345)
+    assert cloud.header.frame_id  # without one no viewer shows it
     expected = [
         {
             "speed": solution.speed,
@@ -74,6 +82,11 @@ def test_every_point_of_a_curve_arrives():
             "branch": index,
             "stable": int(kind is None),
             "detached": 0,
+            "x": np.float32(solution.speed * 30.0 / np.pi / 1000.0),
+            "y": np.float32(solution.eccentricity_max),
+            "z": 0.0,
+            "revision": 7,
+            **{f"{name}/max": one.eccentricity_max for name, one in solution.journals.items()},
         }
         for index, branch in enumerate(branches)
         for arc, (solution, kind) in enumerate(
@@ -87,11 +100,34 @@ def test_every_point_of_a_curve_arrives():
 
 def test_detached_branches_follow_with_a_mark():
     branches = result().curve.branches
-    points = read(sent(response_curve_message(STAMP, branches, branches[:1])))
+    points = read(
+        sent(response_curve_message(STAMP, branches, branches[:1], result().curve.dampers, 7))
+    )
     detached = [point for point in points if point["detached"]]
     assert len(detached) == len(branches[0].values)
     assert {point["branch"] for point in detached} == {len(branches)}
     assert points.index(detached[0]) == sum(len(branch.values) for branch in branches)
+
+
+def test_a_curve_comes_as_arrays_of_every_damper():
+    branches = result(2).curve.branches
+    message = sent(curve_arrays_message(STAMP, branches, branches[:1], 7))
+    assert (message.name[0], message.position[0]) == ("revision", 7.0)
+    assert np.isnan(message.velocity[0])
+    rows = list(zip(message.name, message.velocity, message.position, strict=True))[1:]
+    expected = [
+        (
+            f"{damper}/{index}/{'stable' if kind is None else 'unstable'}",
+            solution.speed,
+            solution.journals[damper].eccentricity_max,
+        )
+        for damper in result(2).curve.dampers
+        for index, branch in enumerate((*branches, branches[0]))
+        for solution, kind in zip(branch.solutions, branch.instability, strict=True)
+    ]
+    assert len(result(2).curve.dampers) == 2
+    assert rows == expected
+    assert list(sent(curve_arrays_message(STAMP, (), (), 7)).name) == ["revision"]
 
 
 def test_an_orbit_is_a_closed_line_in_metres():

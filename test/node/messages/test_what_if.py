@@ -12,7 +12,13 @@ from sensor_msgs.msg import Temperature
 from sfd_hbm_ros.hbm import Harmonics, JournalMotion
 from sfd_hbm_ros.node.inputs import InputError
 from sfd_hbm_ros.node.messages.common import eccentricity_message, read_temperature
-from sfd_hbm_ros.node.messages.what_if import MOST, Answer, read_what_if, what_if_message
+from sfd_hbm_ros.node.messages.what_if import (
+    MOST,
+    Answer,
+    read_what_if,
+    refusals,
+    what_if_message,
+)
 
 from ..graph import JointState, Time
 
@@ -42,14 +48,26 @@ def test_answers_stand_in_the_order_of_the_questions():
 
 
 def test_the_other_branch_stands_beside():
-    message = eccentricity_message(Time(), "rotor", circle(0.4), circle(0.9))
+    message = eccentricity_message(Time(), "rotor", circle(0.4), circle(0.9), 300.0)
     read = dict(zip(message.name, message.position, strict=True))
     assert read["damper_1/max"] == pytest.approx(0.4)
     assert read["damper_1/other_branch/max"] == pytest.approx(0.9)
+    assert list(message.velocity) == [300.0] * len(message.name)
+
+
+def test_a_refusal_says_why_beside_numbers_that_are_none():
+    nothing = circle(math.nan)
+    message = what_if_message(Time(), "rotor", refusals([400.0, 500.0], nothing, "no curve"))
+    names = [f"damper_1/{name}" for name in NAMES]
+    assert list(message.name) == [*names, "reason: no curve", *names]
+    assert list(message.velocity) == [400.0] * 6 + [500.0] * 5
+    assert np.isnan(message.position).all()
+    message = what_if_message(Time(), "rotor", refusals([], {}, "no machine"))
+    assert (list(message.name), len(message.velocity)) == (["reason: no machine"], 1)
 
 
 def test_no_other_branch_is_not_a_number():
-    message = eccentricity_message(Time(), "rotor", circle(0.4), {})
+    message = eccentricity_message(Time(), "rotor", circle(0.4), {}, 300.0)
     assert message.name[-1] == "damper_1/other_branch/max"
     assert math.isnan(message.position[-1])
 
