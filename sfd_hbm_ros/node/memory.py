@@ -21,14 +21,16 @@ from sfd_hbm_ros.node.watch import Watch
 from sfd_hbm_ros.response.tracking.state import State, restore
 from sfd_hbm_ros.response.tracking.state_file import StateFileError, load_state, save_state
 from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
+from sfd_hbm_ros.response.warning.jump_log import JumpLog
 from sfd_hbm_ros.response.warning.settings import Level
 
 _PERIOD = 1.0  # s between two savings without a change worth more
+_SOON = 0.1  # s after which what changed during a write is saved, where no speed comes
 _LONGEST = 2.0  # s for which the node waits for a disk as it gives up its machine
 
 
 class Memory:
-    """Saves and restores the branch that the machine is on, its loads and its alarm.
+    """Saves and restores the branch that the machine is on, its loads, its alarm and its jumps.
 
     A disk may be slow, so a thread writes; the newest state waits where it is still at the last.
 
@@ -61,10 +63,13 @@ class Memory:
         self._written: State | None = None
         self._thread = ThreadPoolExecutor(1)
         self._writing: Future[None] | None = None
-        operation.after_prediction.append(self._take)
+        # The state is taken before the watch looks at the alarm, so that what is saved at once
+        # when that changes, or the machine has jumped, is the response after it.
+        operation.after_prediction.insert(0, self._take)
+        operation.after_prediction.append(lambda prediction, stamp: self._look())
         watch.after_change.append(self._look)
         # for what changed while a write was under way, when no speed comes after it
-        node.create_timer(_PERIOD, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        node.create_timer(_SOON, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def restore(self, model: Model) -> None:
         """Begin with what is in the state file; one that is of no use is reported."""
@@ -111,14 +116,28 @@ class Memory:
         except InputError as error:
             raise StateFileError(f"{self._path}: refused: {error}") from None
         watch = self._watch
-        watch.alarm = JumpAlarm.from_dict(watch.alarm.settings, state.alarm, time.monotonic())
-        for load in [model.checked_load(*given) for given in state.loads.items()]:
-            self._operation.add(load)
-        if not state.settled:
+        alarm = JumpAlarm.from_dict(watch.alarm.settings, state.alarm, time.monotonic())
+        jumps = JumpLog.from_dict(state.jumps)
+        loads = [model.checked_load(*given) for given in state.loads.items()]
+        watch.alarm, watch.jumps = alarm, jumps
+        # A clock that does not run yet, as one of a simulation, tells nothing; a speed will.
+        now = int(self._node.get_clock().now().nanoseconds)
+        problem = self._operation.too_old((now - state.stamp) * 1e-9) if now else ""
+        if problem:
+            self._refused = f"{self._path}: branch and loads are not believed: {problem}"
+            self._node.get_logger().warning(f"state file {self._refused}")
             return
+        for load in loads:
+            self._operation.add(load)
         restored = restore(state, model.balance())
         if restored.same:
-            model.tracker.settle(restored.solution)
+            self._operation.remembered = state.stamp
+            if state.settled:
+                model.tracker.settle(restored.solution)
+            else:
+                model.tracker.assume(restored.solution, state.origin)
+            return
+        if not state.settled:
             return
         self._refused = f"{self._path}: the machine has changed, so that its branch is not known"
         self._node.get_logger().warning(f"state file {self._refused}")
@@ -137,7 +156,7 @@ class Memory:
         self._node.get_logger().warning(f"state file {problem}")
 
     def _take(self, prediction: Prediction, stamp: int) -> None:
-        """Remember a prediction, and save it if it is time."""
+        """Remember a prediction."""
         model = self._operation.model
         tracked = prediction.tracked
         if not self._path or model is None or tracked is None or not tracked.verified:
@@ -151,8 +170,8 @@ class Memory:
             stamp,
             {},  # the alarm's, when it is saved
             model.loads,
+            origin=model.tracker.origin,
         )
-        self._look()
 
     def _look(self) -> None:
         """Save the state if something important has changed, or it is new and a second passed."""
@@ -180,7 +199,8 @@ class Memory:
         if self._stays and os.path.lexists(self._path):
             return
         self._stays = ""
-        state = replace(self._state, alarm=self._watch.alarm.to_dict(now))
+        alarm, jumps = self._watch.alarm.to_dict(now), self._watch.jumps.to_dict()
+        state = replace(self._state, alarm=alarm, jumps=jumps)
         self._writing = self._thread.submit(save_state, self._path, model.machine, state)
 
     def _collect(self, wait: bool = False) -> None:

@@ -23,6 +23,7 @@ from sfd_hbm_ros.response.tracking.excursion import RETURN
 from sfd_hbm_ros.response.warning.acceleration import AccelerationEstimator
 
 _QUEUE = 10
+_DAY = 86400.0  # s
 
 
 class Operation:
@@ -48,10 +49,14 @@ class Operation:
         The last one since the node became active.
     predictions, failures : int
         How many there were, and how many of them without a solution.
+    remembered : int or None
+        Stamp of what is known of the machine from before a restart, until a speed comes [ns].
     speed, load : Feed
         What arrived.
     after_change : list of callable
         Called when the machine has changed: another one, other values, loads or harmonics.
+    after_forgetting : list of callable
+        Called when what was known of the machine is not believed any more.
     after_prediction : list of callable
         Called with every prediction and its stamp [ns], once it has been published.
     """
@@ -64,7 +69,10 @@ class Operation:
         self.predictions = 0
         self.failures = 0
         self.after_change: list[Callable[[], None]] = []
+        self.after_forgetting: list[Callable[[], None]] = []
         self.after_prediction: list[Callable[[Prediction, int], None]] = []
+        self.remembered: int | None = None
+        self._heard: float | None = None  # when the last speed came, by the steady clock [s]
         self._estimator = AccelerationEstimator()
         self._node = node
         self._parameters = parameters
@@ -140,7 +148,7 @@ class Operation:
     def release(self) -> None:
         """Stop, and forget the machine and its loads."""
         self.stop()
-        self.model = None
+        self.model = self.remembered = self._heard = None
         self.load.forget()
 
     def update(self) -> None:
@@ -162,8 +170,37 @@ class Operation:
                 self.model.rim.check(speed, self._parameters["speed.max"])
             stamp = messages.read_stamp(message.header)
             stamp = self.speed.accept(speed, stamp, self._clock(), time.monotonic())
+            self._doubt_history(stamp)
             self._estimator.add(stamp, speed)
             self._request(stamp)
+
+    def _doubt_history(self, stamp: int) -> None:
+        """Believe no more what is known of a machine that was not seen for long before a stamp."""
+        age, now = 0.0, time.monotonic()
+        if self.remembered is not None:
+            age = (stamp - self.remembered) * 1e-9
+        elif self._heard is not None:
+            age = now - self._heard
+        self.remembered, self._heard = None, now
+        problem = self.too_old(age)
+        if problem and self.model is not None:
+            self.model.tracker.forget()
+            for call in self.after_forgetting:
+                call()
+            self._node.get_logger().warning(f"the branch is not believed any more: {problem}")
+
+    def too_old(self, age: float) -> str:
+        """Return why what was known of a machine so long ago [s] is not believed; empty if it is.
+
+        A clock may be a second ahead of another.
+        """
+        limit = self._parameters["state_max_age"]
+        if age < -1.0:
+            return "the machine was last seen at a time that is still to come"
+        if age > limit:
+            ago = f"{age:.0f} s" if age < 2.0 * _DAY else f"{age / _DAY:.0f} days"
+            return f"the machine was last seen {ago} ago, longer than state_max_age, {limit:g} s"
+        return ""
 
     def _on_load(self, message: WrenchStamped) -> None:
         with dropping(self._node, self.load):

@@ -119,6 +119,11 @@ _MACHINE_FILE = (
 _MACHINE_FOLDER = "folder below which machine_file can be changed; empty for not at all"
 _STATE_FILE = "path of the file that outlives a restart, empty for none"
 
+_STATE_MAX_AGE = (
+    "time without speeds, over a restart or not, after which the branch that the machine was on "
+    "is not believed any more"
+)
+
 _CURVE_HANG = "time without a new point of the curve after which its process is replaced"
 
 _OIL_GRADE = "ISO viscosity grade of the oil whose temperature arrives, 0 for none"
@@ -129,6 +134,7 @@ SCHEMA = (
     Spec("machine_file", "", _MACHINE_FILE),
     Spec("machine_folder", "", _MACHINE_FOLDER, read_only=True),
     Spec("state_file", "", _STATE_FILE, read_only=True),
+    Spec("state_max_age", 120.0, _STATE_MAX_AGE, "s", 1.0, 1e6),
     Spec("frame_id", "rotor", "frame of x and y in the headers of what is published"),
     Spec("harmonics", 7, "highest harmonic of the speed in the prediction", "", 1, 31),
     Spec("publish_rate", 100.0, "most predictions a second", "Hz", 0.1, 1000.0),

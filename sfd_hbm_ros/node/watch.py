@@ -19,8 +19,10 @@ from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.jump_status import jump_status
 from sfd_hbm_ros.node.messages import common as messages
 from sfd_hbm_ros.node.operation import Operation
+from sfd_hbm_ros.node.prediction import Prediction
 from sfd_hbm_ros.response.tracking.tracked import BranchName, Tracked
 from sfd_hbm_ros.response.warning.jump_alarm import Answer, JumpAlarm
+from sfd_hbm_ros.response.warning.jump_log import JumpLog
 from sfd_hbm_ros.response.warning.limits import Approach
 from sfd_hbm_ros.response.warning.outlook import Outlook, unknown_outlook
 from sfd_hbm_ros.response.warning.rounding import Rounding
@@ -48,8 +50,10 @@ class Watch:
     ----------
     alarm : JumpAlarm
         The alarm; its times are those of `time.monotonic`.
+    jumps : JumpLog
+        The jumps that the machine made.
     after_change : list of callable
-        Called when the alarm has got into another state.
+        Called when the alarm has got into another state, or the machine has jumped.
     """
 
     def __init__(
@@ -60,6 +64,8 @@ class Watch:
         hardware: Callable[[], str],
     ) -> None:
         self.alarm = JumpAlarm(AlarmSettings())
+        self.jumps = JumpLog()
+        self._ahead: Outlook | None = None  # of the last prediction
         self.after_change: list[Callable[[], None]] = []
         self._node = node
         self._operation = operation
@@ -77,7 +83,8 @@ class Watch:
         node.create_service(Trigger, "~/reset", self._reset)
         node.create_service(SetBool, "~/shelve", self._shelve)
         node.create_timer(_LOOK, self.look, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        operation.after_prediction.append(lambda prediction, stamp: self.look())
+        operation.after_prediction.append(self._follow)
+        operation.after_forgetting.append(lambda: self.jumps.lose_sight())
 
     @property
     def signature(self) -> tuple[object, ...]:
@@ -87,18 +94,20 @@ class Watch:
             (one.active, one.raised, one.acknowledged, one.occurrences)
             for one in self.alarm.alarms.values()
         )
-        return self.alarm.level(now), self.alarm.state(now), *alarms
+        jumps = self.jumps.count, self.jumps.unseen
+        return self.alarm.level(now), self.alarm.state(now), *alarms, *jumps
 
     def release(self) -> None:
         """Forget the alarm together with the machine."""
         self.alarm = JumpAlarm(self.alarm.settings)
+        self.jumps = JumpLog()
         self._approach = Approach()
 
     def look(self) -> None:
         """Have the alarm take what lies ahead, and publish what has changed."""
         now = time.monotonic()
         tracked = self._tracked()
-        outlook = self._outlook(tracked)
+        outlook = self._ahead = self._outlook(tracked)
         reported = self.alarm.alarms[Level.ERROR].present
         settings = self._approach.fitted(
             self.alarm.settings, outlook.time_to_jump, reported=reported
@@ -129,12 +138,17 @@ class Watch:
         # Where no jump is seen, that all is well is not either.
         if self._curves.outside and not self.alarm.shelved_for(time.monotonic()):
             level = max(level, Level.WARN)
-        return replace(
-            status,
-            level=level,
-            message=status.message + self._reservation(age),
-            values={**status.values, **self._curves.revisions},
-        )
+        stamp = self._node.get_clock().now().nanoseconds * 1e-9
+        message = self.jumps.sentence(stamp) + status.message + self._reservation(age)
+        jumps = {"jumps": str(self.jumps.count), "last_jumps": "; ".join(self.jumps.rows)}
+        values = {**status.values, **self._curves.revisions, **jumps}
+        return replace(status, level=level, message=message, values=values)
+
+    def _follow(self, prediction: Prediction, stamp: int) -> None:
+        """Notice whether the machine has jumped, and look at what lies ahead now."""
+        if prediction.tracked:
+            self.jumps.take(prediction.tracked, stamp * 1e-9, self._ahead)
+        self.look()
 
     def _reservation(self, age: float) -> str:
         """Return why the warning is none, or under which reservation it stands."""
@@ -173,7 +187,10 @@ class Watch:
         return jumps.outlook(tracked.place, *course)
 
     def _acknowledge(self, _: Any, response: Trigger.Response) -> Trigger.Response:
-        return self._answered(response, self.alarm.acknowledge())
+        answer = self.alarm.acknowledge()
+        if self.jumps.acknowledge():
+            answer = Answer(True, "acknowledged")
+        return self._answered(response, answer)
 
     def _reset(self, _: Any, response: Trigger.Response) -> Trigger.Response:
         return self._answered(response, self.alarm.reset())

@@ -34,6 +34,10 @@ class State:
         State of the alarms, as JSON can hold it.
     loads : mapping of str to (2,) tuple of float
         Forces x, y that were given while the machine ran [N], by their stations.
+    jumps : mapping
+        The jumps that the machine made, as JSON can hold them.
+    origin : float or None
+        Where it is not settled: speed from which the response was followed [rad/s], if known.
     """
 
     speed: float
@@ -43,6 +47,8 @@ class State:
     stamp: int
     alarm: Mapping[str, Any]
     loads: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    jumps: Mapping[str, Any] = field(default_factory=dict)
+    origin: float | None = None
 
 
 class Restored(NamedTuple):
@@ -90,11 +96,13 @@ def to_plain(state: State) -> dict[str, Any]:
         "stamp": state.stamp,
         "alarm": dict(state.alarm),
         "loads": {station: list(force) for station, force in state.loads.items()},
+        "jumps": dict(state.jumps),
+        "origin": state.origin,
     }
 
 
 def from_plain(content: Mapping[str, Any]) -> State:
-    """The state that `to_plain` made plain; the loads may be missing, as in older files.
+    """The state that `to_plain` made plain; what older files lack may be missing.
 
     Raises
     ------
@@ -118,4 +126,6 @@ def from_plain(content: Mapping[str, Any]) -> State:
         int(content["stamp"]),
         content["alarm"],
         {station: (float(x), float(y)) for station, (x, y) in content.get("loads", {}).items()},
+        content.get("jumps", {}),
+        None if (origin := content.get("origin")) is None else float(origin),
     )

@@ -74,6 +74,11 @@ class Tracker:
         return self._known.settled
 
     @property
+    def origin(self) -> float | None:
+        """Speed from which a response not settled was followed [rad/s]; None if not known."""
+        return self._known.origin
+
+    @property
     def current(self) -> bool:
         """Whether there is a curve, and it is that of the present machine."""
         return self._guide.current
@@ -118,6 +123,11 @@ class Tracker:
             raise ValueError(f"there is no solution at {solution.speed} rad/s to settle on")
         self._learn(last=placed(self._guide, solution), settled=True)
         self._excursion = Excursion()
+
+    def assume(self, solution: Solution, origin: float | None) -> None:
+        """Go on from a response on which the machine may be, followed from a speed [rad/s]."""
+        self.settle(solution)
+        self._learn(settled=False, origin=origin)
 
     def forget(self) -> None:
         """Begin anew: what the machine did meanwhile is not known."""
