@@ -278,6 +278,7 @@ class Curves:
         assert model is not None
         if not exactly:
             job = replace(job, machine=model.loaded_by(self._mean.forces(model.loads)))
+        self._mean = MeanLoads()
         self.worker.request(job)
 
     def _adopt(self, result: CurveResult) -> None:

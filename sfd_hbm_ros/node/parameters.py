@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 from rclpy.node import Node
@@ -160,7 +161,8 @@ class Parameters:
 
     def release(self) -> None:
         """Undeclare the values of the machine."""
-        self._set_range([float(self._specs[name].default) / RPM for name in _RANGE])
+        with suppress(ParameterError):  # where what was chosen allows no other
+            self._set_range([float(self._specs[name].default) / RPM for name in _RANGE])
         for name in self._machine:
             self._node.undeclare_parameter(name)
         self._machine, self._file = {}, None

@@ -51,9 +51,9 @@ def deviation(balance: HarmonicBalance, responses: Iterable[Solution]) -> float:
 
     Returns
     -------
-    The distance: 0 where nothing was compared, infinite where it cannot be computed.
+    The distance; infinite where it cannot be computed, or nothing could be compared.
     """
-    greatest = 0.0
+    distances = []
     for response in responses:
         if response.harmonics != balance.harmonics:
             continue
@@ -66,8 +66,8 @@ def deviation(balance: HarmonicBalance, responses: Iterable[Solution]) -> float:
             return np.inf
         if not np.isfinite(step):
             return np.inf
-        greatest = max(greatest, step)
-    return greatest
+        distances.append(step)
+    return max(distances, default=np.inf)
 
 
 def _step(balance: HarmonicBalance, response: Solution) -> float:
