@@ -105,7 +105,7 @@ def _change(text: str) -> tuple[str, Any]:
         raise UsageError(f"--set {path}: {error}") from None
 
 
-def speed_from(rpm: float) -> float:
+def speed_from(rpm: float, option: str = "--rpm") -> float:
     """Rotor speed [rad/s] of a value given in rpm.
 
     Raises
@@ -114,7 +114,7 @@ def speed_from(rpm: float) -> float:
         If it is not finite and positive.
     """
     if not (math.isfinite(rpm) and rpm > 0.0):
-        raise UsageError(f"--rpm {rpm:g}: must be a finite speed above 0 rpm")
+        raise UsageError(f"{option} {rpm:g}: must be a finite speed above 0 rpm")
     return rpm * RPM
 
 

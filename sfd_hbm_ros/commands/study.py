@@ -60,6 +60,18 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--samples", type=int, metavar="N", help="number of draws (needed with --sample)"
     )
     parser.add_argument("--seed", type=int, metavar="S", help="seed of the draws (default 0)")
+    parser.add_argument(
+        "--at",
+        type=float,
+        metavar="RPM",
+        help="operating speed: how many responses there are, and the worst and best vibration",
+    )
+    parser.add_argument(
+        "--detached",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="look for branches that no run-up meets, too (default: yes)",
+    )
     add_harmonics(parser)
     parser.add_argument(
         "--output",
@@ -100,7 +112,7 @@ def run(chosen: argparse.Namespace) -> None:
         )
     if chosen.picture:
         _draw(results, task, chosen.picture)
-    data = data_of(results, kept, time.perf_counter() - started)
+    data = data_of(results, kept, time.perf_counter() - started, chosen.at)
     if chosen.json:
         print_json(data)
     else:
@@ -123,8 +135,12 @@ def _study(chosen: argparse.Namespace, machine: Machine) -> tuple[Design, Task]:
         chosen.seed or 0,
     )
     lowest, highest = map(speed_from, sorted(range_from("--rpm", chosen.rpm)))
+    operating = None if chosen.at is None else speed_from(chosen.at, "--at")
+    if operating is not None and not lowest <= operating <= highest:
+        raise UsageError(f"--at {chosen.at:g}: must lie in the range of --rpm {chosen.rpm}")
+    harmonics = harmonics_options(chosen.harmonics)
     return design, Task(
-        machine, design.paths, lowest, highest, harmonics_options(chosen.harmonics)
+        machine, design.paths, lowest, highest, harmonics, operating, chosen.detached
     )
 
 
@@ -139,6 +155,8 @@ def _identity(chosen: argparse.Namespace, task: Task) -> dict[str, Any]:
         "samples": chosen.samples,
         "seed": chosen.seed or 0,
         "harmonics": chosen.harmonics,
+        "at": chosen.at,
+        "detached": chosen.detached,
     }
 
 

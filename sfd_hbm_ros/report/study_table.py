@@ -18,6 +18,16 @@ _OUTCOMES: dict[str, Callable[[Outcome], Any]] = {
     "peak_eccentricity": lambda one: one.peak_eccentricity,
     "seconds": lambda one: one.seconds,
     "reason": lambda one: one.reason,
+    "peak_vibration": lambda one: one.peak_vibration,
+    "several_from_rpm": lambda one: _rpm(one.several_from),
+    "several_to_rpm": lambda one: _rpm(one.several_to),
+    "detached": lambda one: one.detached,
+    "locked_up": lambda one: None if one.locked_up is None else int(one.locked_up),
+    "responses": lambda one: one.responses,
+    "worst_vibration": lambda one: one.worst_vibration,
+    "best_vibration": lambda one: one.best_vibration,
+    "worst_eccentricity": lambda one: one.worst_eccentricity,
+    "best_eccentricity": lambda one: one.best_eccentricity,
 }
 
 
@@ -27,7 +37,9 @@ def study_writer(path: Path) -> Callable[[Results], None]:
     Columns are the number of the variant, the values of the entries that vary by their dotted
     paths, the speeds of the first jumps of a run-up and of a coast-down [rpm], the width between
     them [rpm], speed [rpm] and eccentricity of the peak, the time taken [s], and the reason where
-    there is no solution. What there is not is left empty. Numbers are in full precision.
+    there is no solution; then what is said in `Outcome` of several responses, with speeds in rpm
+    and 1 or 0 for what is so or not. What there is not is left empty. Numbers are in full
+    precision.
 
     Parameters
     ----------

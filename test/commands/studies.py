@@ -12,7 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 PAPER = str(ROOT / "config" / "paper_rotor.yaml")
 UNBALANCE, SPRING = "unbalance.disk_2.magnitude", "dampers.damper_1.centering_stiffness"
-CURVE = ("--rpm", "3900:4020", "--harmonics", "1")
+CURVE = ("--rpm", "3900:4020", "--harmonics", "1", "--no-detached")
 GRID = ("--vary", f"{UNBALANCE}=4e-4:4.8e-4:12", "--vary", f"{SPRING}=2.6e6:2.7e6:6")
 VARIANTS = 72
 

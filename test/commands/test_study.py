@@ -130,7 +130,7 @@ def test_no_solution_at_all_is_status_1(tmp_path, capsys):
 
 
 def test_another_study_does_not_mix_with_the_first(output, capsys):
-    other = ["--rpm", "3900:4021", "--harmonics", "1"]
+    other = ["--rpm", "3900:4021", "--harmonics", "1", "--no-detached"]
     assert main(["study", PAPER, *other, *GRID, "--output", str(output)]) == 2
     _, err = capsys.readouterr()
     assert err == (
@@ -175,6 +175,14 @@ SAMPLE = f"{UNBALANCE}=normal(4.3e-4,1e-5)"
         ),
         (("--vary", f"{SPRING}=1:2:2", "--harmonics", "0"), "harmonics: 0 is not allowed"),
         (("--vary", f"{SPRING}=1:2:2", "--rpm", "0:9"), "--rpm 0: must be a finite speed above"),
+        (
+            ("--vary", f"{SPRING}=1:2:2", "--at", "5000"),
+            "--at 5000: must lie in the range of ",
+        ),
+        (
+            ("--vary", f"{SPRING}=1:2:2", "--at", "nan"),
+            "--at nan: must be a finite speed above",
+        ),
     ],
 )
 def test_bad_input_is_refused_before_anything_runs(options, sentence, tmp_path, capsys):

@@ -115,3 +115,52 @@ def misaligned_rotor():
         loads=(Load("disk", (0.0, -53.0)),),
         gravity=False,
     )
+
+
+def rigid_rotor(unbalance, film, mass=10.0, natural=100.0, clearance=1e-4):
+    """A stiff rotor between two equal dampers with springs, whose response is in closed form.
+
+    Taylor and Kumar 1980, Cookson and Kossa 1979: with the natural frequency `natural` [rad/s] of
+    its `mass` [kg] on the springs, the speed over it W, the `unbalance` u = U/(mass clearance) and
+    the `film` b = mu R L^3/(mass clearance^3 natural) of both dampers, a circular orbit of
+    eccentricity e fulfils `rigid_balance`.
+    """
+    radius, length, journal = 0.05, 0.02, 0.01
+    shaft = ShaftSegment(2, 0.1, 0.1, 0.0, Material("stiff", 1e13, 100.0, 0.3))
+    shaft_mass = 0.2 * np.pi / 4 * 0.1**2 * 100.0
+    return Machine(
+        name="rigid rotor on two dampers",
+        materials=(shaft.material,),
+        shaft=(shaft,),
+        disks=(Disk("disk", 1, mass - 2.0 * journal - shaft_mass, 0.05, 0.03),),
+        bearings=(),
+        dampers=tuple(
+            Damper(
+                name=f"damper_{node}",
+                node=node,
+                bearing_stiffness=1e9,
+                bearing_damping=0.0,
+                journal_mass=journal,
+                centering_stiffness=mass * natural**2 / 2.0,
+                diameter=2.0 * radius,
+                length=length,
+                clearance=clearance,
+                viscosity=0.5 * film * mass * clearance**3 * natural / (radius * length**3),
+                density=0.0,
+                film=FilmSettings(inertia=False),
+            )
+            for node in (0, 2)
+        ),
+        unbalance=(Unbalance("disk", unbalance * mass * clearance),),
+    )
+
+
+def rigid_balance(unbalance, film, speed, eccentricity):
+    """How far a circular orbit of a rigid rotor is from balance, of the unbalance's force.
+
+    All are as in `rigid_rotor`, the speed over the natural frequency.
+    """
+    s = 1.0 - eccentricity**2
+    radial = 1.0 - speed**2 + 2.0 * film * speed * eccentricity / s**2
+    tangential = 0.5 * np.pi * film * speed / s**1.5
+    return eccentricity * np.hypot(radial, tangential) / (unbalance * speed**2) - 1.0

@@ -5,7 +5,7 @@ its folds. Where the branch in the unbalance comes through the full unbalance ag
 another response, and if that lies on no known branch it is followed in speed both ways.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +26,7 @@ from sfd_hbm_ros.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 
-_LEAST, _MOST = 0.3, 4.0  # parts of the unbalance between which it is followed
+_LEAST, _MOST = 0.05, 20.0  # parts of the unbalance between which it is followed
 
 
 @one_blas_thread
@@ -34,7 +34,7 @@ def detached_branches(
     curve: ResponseCurve,
     lowest: float,
     highest: float,
-    speeds: int = 9,
+    speeds: int | Sequence[float] = 9,
     options: ContinuationOptions | None = None,
     progress: Progress | None = None,
 ) -> list[CurveBranch]:
@@ -46,10 +46,11 @@ def detached_branches(
         The response over the speed.
     lowest, highest : float
         Range of the speed [rad/s].
-    speeds : int
-        Number of speeds, evenly spaced, at which other responses are looked for. They are also
-        looked for just below the critical speeds of the shaft with its journals held, where a
-        damper closes on its clearance. A detached branch that spans none of these is not found.
+    speeds : int or sequence of float
+        Speeds [rad/s] at which other responses are looked for, or the number of speeds that are
+        evenly spaced over the range. They are also looked for just below the critical speeds
+        of the shaft with its journals held, where a damper closes on its clearance. A detached
+        branch that spans none of these is not found.
     options : ContinuationOptions, optional
         Settings of the continuation.
     progress : callable, optional
@@ -70,12 +71,15 @@ def detached_branches(
     return found
 
 
-def _speeds(balance: HarmonicBalance, lowest: float, highest: float, number: int) -> Array:
+def _speeds(
+    balance: HarmonicBalance, lowest: float, highest: float, speeds: int | Sequence[float]
+) -> Array:
     """Speeds at which to look [rad/s]."""
+    given = np.linspace(lowest, highest, speeds) if isinstance(speeds, int) else speeds
     held = [critical.speed for critical in critical_speeds(hold_journals(balance.model))]
     below = np.multiply.outer(held, [0.998, 0.99]).ravel()
     inside = below[(below > lowest) & (below < highest)]
-    return np.sort(np.concatenate([np.linspace(lowest, highest, number), inside]))
+    return np.unique(np.concatenate([given, inside]))
 
 
 def responses_over_unbalance(
