@@ -38,3 +38,20 @@ def test_arguments_files_nodes_and_parameters_exist(file):
             named = {given["name"] for given in node["param"] if "name" in given}
             assert named <= {spec.name for spec in SCHEMA}
     assert entries(file, "node") or entries(file, "include")
+
+
+def test_launch_file_and_demo_play_the_same_machine_with_the_same_alarm():
+    """The paper's rotor, with that unbalance at which it jumps."""
+    demo = (ROOT / "scripts" / "demo.sh").read_text()
+    simulation = ROOT / "launch" / "simulation.launch.yaml"
+    [played] = set(re.findall(r"config/(\w+rotor\.yaml)", demo + simulation.read_text())) | set(
+        re.findall(r'"\$config/(\w+rotor\.yaml)"', demo)
+    )
+    assert "alarm." not in demo + simulation.read_text()
+    jumping, paper = (
+        yaml.safe_load((ROOT / "config" / name).read_text())
+        for name in (played, "paper_rotor.yaml")
+    )
+    assert jumping["unbalance"] == [{"station": "disk_2", "magnitude": 5.039e-4, "phase": 0.0}]
+    named = {key: paper[key] for key in ("name", "unbalance")}
+    assert {**jumping, **named} == {**paper, "operating_speed_rpm": [1900.0, 6100.0]}

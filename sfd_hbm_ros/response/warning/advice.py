@@ -105,11 +105,10 @@ def _reach(outlook: Outlook) -> str:
 
 
 def _about_jump(outlook: Outlook, key: str, rounding: Rounding) -> str:
-    """A jump that is expected: of what, where to and when."""
+    """A jump that is expected: of what, where to and how far away."""
     speed = rounding.rpm(f"{key}speed", outlook.next.speed / RPM)
-    distance = rounding.within_rpm(f"{key}margin", outlook.margin / RPM)
-    way = _way(outlook, key, rounding)
-    return f"{_landing(outlook.next, key, rounding)} expected at {speed}, {distance} {way}"
+    landing, way = _landing(outlook.next, key, rounding), _way(outlook, key, rounding)
+    return f"{landing} expected at {speed}, {way}"
 
 
 def _landing(jump: JumpAhead, key: str, rounding: Rounding) -> str:
@@ -123,13 +122,13 @@ def _landing(jump: JumpAhead, key: str, rounding: Rounding) -> str:
 
 
 def _way(outlook: Outlook, key: str, rounding: Rounding) -> str:
-    """On which side of the present speed a jump lies, and how soon it comes."""
+    """How soon a jump comes or, where the speed does not tell that, how far away it is."""
     time = outlook.time_to_jump
     if math.isfinite(time):
-        soon = rounding.within_time(f"{key}time", time)
-        return f"ahead, in {soon} at the present acceleration"
+        return f"in {rounding.within_time(f'{key}time', time)} at the present acceleration"
+    distance = rounding.within_rpm(f"{key}margin", outlook.margin / RPM)
     side = "above" if outlook.next.direction is Direction.RUN_UP else "below"
-    return f"{side} the present speed"
+    return f"{distance} {side} the present speed"
 
 
 def _about_level(alarm: JumpAlarm, now: float, rounding: Rounding) -> str:

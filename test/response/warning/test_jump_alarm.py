@@ -391,13 +391,13 @@ NONE = JumpAhead(Direction.RUN_UP, math.inf)
     [
         (
             Outlook(SPEED, 3.0 * RPM, True, UP, DOWN),
-            "Jump up to eccentricity 0.93 expected at 3985 rpm, less than 50 rpm ahead, in "
+            "Jump up to eccentricity 0.93 expected at 3985 rpm, in "
             "less than 20 s at the present acceleration",
         ),
         (
             Outlook(SPEED, -20.0 * RPM, True, UP, DOWN),
-            "Jump of de down to eccentricity 0.42 expected at 3905 rpm, less than 50 rpm "
-            "ahead, in less than 5 s at the present acceleration",
+            "Jump of de down to eccentricity 0.42 expected at 3905 rpm, in "
+            "less than 5 s at the present acceleration",
         ),
         (
             Outlook(SPEED, -20.0 * RPM, True, UP, DOWN, settled=False),
