@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from sfd_hbm_ros.node.diagnostics import Status
+from sfd_hbm_ros.response.tracking.measurements import UNSEEN, Seen
 from sfd_hbm_ros.response.tracking.tracked import BranchName
 from sfd_hbm_ros.response.warning.advice import advice
 from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
@@ -19,6 +20,7 @@ def jump_status(
     model_age: float,
     now: float,
     rounding: Rounding | None = None,
+    seen: Seen = UNSEEN,
 ) -> Status:
     """Return the warning; +inf stands for none ahead, NaN for not computable (REP 117).
 
@@ -38,6 +40,8 @@ def jump_status(
         Time by the alarm's clock [s].
     rounding : Rounding, optional
         What rounds the numbers of the sentence.
+    seen : Seen, optional
+        What measured orbits say.
     """
     leading, ahead = alarm.leading, outlook.next
     values = {
@@ -50,6 +54,9 @@ def jump_status(
         "margin_percent": _number(100.0 * outlook.relative_margin),
         "time_to_jump_s": _number(outlook.time_to_jump),
         "eccentricity": _number(eccentricity),
+        "measured_eccentricity": _number(seen.eccentricity).replace("-inf", "nan"),
+        "measured_disagreement": _number(seen.disagreement),
+        "doubtful": str(seen.differs).lower(),
         "eccentricity_after": _number(ahead.eccentricity_after),
         "run_up_jump_rpm": _number(outlook.run_up.speed / RPM),
         "coast_down_jump_rpm": _number(outlook.coast_down.speed / RPM),
@@ -57,13 +64,21 @@ def jump_status(
         if outlook.others
         else "",
         "alarm": str(alarm.state(now)),
-        "held_by": "; ".join(str(cause) for cause in alarm.causes(now)),
+        "held_by": "; ".join([*_doubt(seen), *(str(cause) for cause in alarm.causes(now))]),
         "since_s": _number(now - leading.since),
         "occurrences": str(leading.occurrences),
         "model_age_s": _number(model_age),
     }
-    sentence = advice(alarm, outlook, eccentricity, now, rounding)
+    sentence = advice(alarm, outlook, eccentricity, now, rounding, seen)
     return Status("Jump", alarm.level(now), sentence, values)
+
+
+def _doubt(seen: Seen) -> list[str]:
+    """Return what holds a warning whatever the model says."""
+    if not seen.differs:
+        return []
+    values = f"{_number(seen.disagreement)} of the orbit, limit {_number(seen.threshold)}"
+    return [f"difference of model and machine {values}"]
 
 
 def _possible(outlook: Outlook) -> str:

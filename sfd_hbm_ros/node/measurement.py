@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import replace
 
 from rclpy.lifecycle import LifecycleNode
@@ -18,7 +19,8 @@ from sfd_hbm_ros.node.messages import common as messages
 from sfd_hbm_ros.node.messages.measured import read_measured
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
-from sfd_hbm_ros.node.prediction import Prediction
+from sfd_hbm_ros.node.prediction import Model, Prediction
+from sfd_hbm_ros.response.tracking.measured import measured_eccentricities, unit_hint
 from sfd_hbm_ros.response.tracking.settling import Judgement, Settling
 from sfd_hbm_ros.response.tracking.tracked import Tracked
 from sfd_hbm_ros.response.warning.settings import Level
@@ -59,14 +61,20 @@ class Measurement:
 
     def added_to(self, status: Status) -> Status:
         """Return the status of the model with how it agrees with what is measured."""
-        judgement = self.feed.value
-        age = self.feed.age(time.monotonic())
-        if judgement is None or age > self._parameters["stale_after"]:
-            return status
-        disagreement = judgement.agreement.disagreement
-        values = {**status.values, "measured: disagreement": f"{disagreement:.3g}"}
+        judgement, now = self.feed.value, time.monotonic()
+        stale_after = self._parameters["stale_after"]
+        seen = self._operation.measurements.eccentricities(now, stale_after)
+        values = {
+            **status.values,
+            **{f"measured: eccentricity {name}": f"{one:.6g}" for name, one in seen.items()},
+        }
+        if judgement is None or self.feed.age(now) > stale_after:
+            return replace(status, values=values)
+        agreement = judgement.agreement
+        values["measured: disagreement"] = f"{agreement.disagreement:.3g}"
+        values["measured: difference [of the clearance]"] = f"{agreement.difference:.3g}"
         message = f"{status.message}; {judgement.message}"
-        level = Level.WARN if disagreement >= self._parameters["measured.warn"] else Level.OK
+        level = Level.WARN if self._operation.seen.differs else Level.OK
         return replace(status, level=max(status.level, level), message=message, values=values)
 
     def _take(self, message: JointState) -> None:
@@ -75,28 +83,42 @@ class Measurement:
             measured = read_measured(message)
             clock = int(self._node.get_clock().now().nanoseconds)
             given = messages.read_stamp(message.header)
-            tracked = self._nearest(given or clock)
             model = self._operation.model
-            assert model is not None  # as there are predictions
+            if model is None or not self._operation.active:
+                return
+            self._see(measured, model, abs(clock - (given or clock)) * 1e-9)
+            if self._operation.speed.value is None or not self._predicted:
+                return  # it is early, and nothing is wrong with it
+            tracked = self._nearest(given or clock)
             judgement = self._settling.judge(measured, tracked, model.tracker.settled)
             if math.isnan(judgement.agreement.disagreement):
                 raise InputError(judgement.message)
-            stamp = self.feed.accept(judgement, given, clock, time.monotonic())
+            now = time.monotonic()
+            stamp = self.feed.accept(judgement, given, clock, now)
+            self._operation.measurements.compare(judgement.agreement, now)
             residuals = judgement.agreement.residuals
             header = Time(nanoseconds=stamp), self._parameters["frame_id"]
             self._publisher.publish(messages.numbers_message(*header, residuals))
             if judgement.settles is not None:
                 model.tracker.settle(judgement.settles)
                 self._forget()
+                self._operation.measurements.forget_model()
                 self._operation.predict_again()
+
+    def _see(self, measured: Mapping[str, float], model: Model, age: float) -> None:
+        """Take what an orbit of an age [s] says whatever the model and the speed."""
+        clearances = {damper.name: damper.clearance for damper in model.machine.dampers}
+        if hint := unit_hint(measured, clearances):
+            raise InputError(hint)
+        if age <= self._parameters["stale_after"]:
+            eccentricities = measured_eccentricities(measured, clearances)
+            self._operation.measurements.see(eccentricities, time.monotonic())
 
     def _nearest(self, stamp: int) -> Tracked:
         """The operating point at a time [ns]."""
         silence = self._operation.silence
         if silence:
             raise InputError(f"nothing is predicted, as {silence}")
-        if not self._predicted:
-            raise InputError("there is no prediction of the machine as it is to compare it with")
         at, tracked = min(self._predicted, key=lambda one: abs(one[0] - stamp))
         apart = abs(at - stamp) * 1e-9
         if apart > self._parameters["stale_after"]:

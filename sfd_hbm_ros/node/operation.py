@@ -20,6 +20,7 @@ from sfd_hbm_ros.node.messages import common as messages
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.prediction import Model, Prediction
 from sfd_hbm_ros.response.tracking.excursion import RETURN
+from sfd_hbm_ros.response.tracking.measurements import Measurements, Seen
 from sfd_hbm_ros.response.warning.acceleration import AccelerationEstimator
 
 _QUEUE = 10
@@ -53,6 +54,8 @@ class Operation:
         Stamp of what is known of the machine from before a restart, until a speed comes [ns].
     speed, load : Feed
         What arrived.
+    measurements : Measurements
+        What measured orbits say of the machine, by `time.monotonic`.
     after_change : list of callable
         Called when the machine has changed: another one, other values, loads or harmonics.
     after_forgetting : list of callable
@@ -73,6 +76,7 @@ class Operation:
         self.after_prediction: list[Callable[[Prediction, int], None]] = []
         self.remembered: int | None = None
         self._heard: float | None = None  # when the last speed came, by the steady clock [s]
+        self.measurements = Measurements()
         self._estimator = AccelerationEstimator()
         self._node = node
         self._parameters = parameters
@@ -97,6 +101,12 @@ class Operation:
     def settled(self) -> bool:
         """Whether the acceleration has settled since a start or a reversal."""
         return self._estimator.settled
+
+    @property
+    def seen(self) -> Seen:
+        """What measured orbits say now."""
+        warn, stale_after = (self._parameters[key] for key in ("measured.warn", "stale_after"))
+        return self.measurements.seen(warn, time.monotonic(), stale_after)
 
     @property
     def silence(self) -> str:
@@ -144,6 +154,7 @@ class Operation:
         self.prediction = self._believed = None
         self.speed.forget()
         self._estimator.forget()
+        self.measurements.forget()
 
     def release(self) -> None:
         """Stop, and forget the machine and its loads."""
@@ -244,8 +255,9 @@ class Operation:
         self.failures += prediction.failed
         header = Time(nanoseconds=stamp), self._parameters["frame_id"]
         journals = prediction.journals
+        seen = self.measurements.eccentricities(time.monotonic(), self._parameters["stale_after"])
         self._eccentricity.publish(
-            messages.eccentricity_message(*header, journals, prediction.others, speed)
+            messages.eccentricity_message(*header, journals, prediction.others, speed, seen)
         )
         self._harmonics.publish(messages.harmonics_message(*header, journals))
         for call in self.after_prediction:

@@ -148,7 +148,7 @@ SCHEMA = (
     Spec("oil.viscosity_40", 0.0, _OIL_VISCOSITY.format(40), "mm2/s", 0.0, 1e5),
     Spec("oil.viscosity_100", 0.0, _OIL_VISCOSITY.format(100), "mm2/s", 0.0, 1e5),
     Spec("oil.density", 865.0, "density of the oil at 40 deg C", "kg/m3", 500.0, 2000.0),
-    Spec("measured.warn", 0.5, _MEASURED_WARN, "of the orbit", 0.01, 2.0),
+    Spec("measured.warn", 0.15, _MEASURED_WARN, "of the orbit", 0.01, 2.0),
     Spec(
         "autostart",
         True,

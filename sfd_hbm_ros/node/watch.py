@@ -23,7 +23,7 @@ from sfd_hbm_ros.node.prediction import Prediction
 from sfd_hbm_ros.response.tracking.tracked import BranchName, Tracked
 from sfd_hbm_ros.response.warning.jump_alarm import Answer, JumpAlarm
 from sfd_hbm_ros.response.warning.jump_log import JumpLog
-from sfd_hbm_ros.response.warning.limits import Approach
+from sfd_hbm_ros.response.warning.limits import MEASURED, Approach
 from sfd_hbm_ros.response.warning.outlook import Outlook, unknown_outlook
 from sfd_hbm_ros.response.warning.rounding import Rounding
 from sfd_hbm_ros.response.warning.settings import AlarmSettings, Level
@@ -113,9 +113,11 @@ class Watch:
             self.alarm.settings, outlook.time_to_jump, reported=reported
         )
         eccentricity = _greatest(outlook, _eccentricity(tracked))
-        self.alarm.update(outlook, eccentricity, now, settings=settings)
-        outside = bool(self._curves.outside)
-        signature = *self.signature, self._branch(tracked), self._curves.usable, outside
+        seen, outside = self._operation.seen, bool(self._curves.outside)
+        measured = {MEASURED.name: seen.eccentricity}
+        self.alarm.update(outlook, eccentricity, now, measured, settings, doubtful=seen.differs)
+        shown = self._branch(tracked), self._curves.usable, outside, seen.differs
+        signature = *self.signature, *shown
         if signature != self._published:
             for call in self.after_change:
                 call()
@@ -132,7 +134,7 @@ class Watch:
         """Return the warning."""
         tracked = self._tracked()
         outlook, branch, age = self._outlook(tracked), self._branch(tracked), self._curves.age
-        given = _eccentricity(tracked), age, time.monotonic(), self._rounding
+        given = _eccentricity(tracked), age, time.monotonic(), self._rounding, self._operation.seen
         status = jump_status(self.alarm, outlook, branch, *given)
         level = status.level
         # Where no jump is seen, that all is well is not either.

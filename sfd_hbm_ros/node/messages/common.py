@@ -93,14 +93,20 @@ def speed_message(stamp: Time, speed: float, angle: float) -> JointState:
 
 
 def eccentricity_message(
-    stamp: Time, frame: str, journals: Journals, others: Journals, speed: float
+    stamp: Time,
+    frame: str,
+    journals: Journals,
+    others: Journals,
+    speed: float,
+    measured: Mapping[str, float] | None = None,
 ) -> JointState:
     """Return the eccentricities of all journals, of their clearances.
 
-    `others` are those on the other stable branch, empty where there is none. The speed at which
-    they are [rad/s] stands beside each in `velocity`, as in the answers to what-if questions.
+    `others` are those on the other stable branch, empty where there is none, and `measured` the
+    greatest ones of measured orbits. The speed at which they are [rad/s] stands beside each in
+    `velocity`, as in the answers to what-if questions.
     """
-    message = numbers_message(stamp, frame, dict(eccentricities(journals, others)))
+    message = numbers_message(stamp, frame, dict(eccentricities(journals, others, measured)))
     message.velocity = array("d", [speed] * len(message.name))
     return message
 
@@ -109,7 +115,7 @@ def harmonics_message(stamp: Time, frame: str, journals: Journals) -> JointState
     """Return the harmonics of all journals: x = X0 + sum A_i cos(i W t - phase_i), and so y.
 
     The mean X0 and the amplitudes A_i, zero to peak, are in metres. The phases are lags [rad], as
-    in vibration monitoring.
+    in vibration monitoring, and NaN where an amplitude is too small to have one.
     """
     return numbers_message(stamp, frame, named_harmonics(journals))
 
@@ -147,10 +153,13 @@ def numbers_message(stamp: Time, frame: str, numbers: Mapping[str, float]) -> Jo
     return JointState(header=header, name=list(numbers), position=position)
 
 
-def eccentricities(journals: Journals, others: Journals) -> Named:
+def eccentricities(
+    journals: Journals, others: Journals, measured: Mapping[str, float] | None = None
+) -> Named:
     """Yield the eccentricities of all journals with their names.
 
-    Those on the other stable branch are NaN where there is none.
+    Those on the other stable branch are NaN where there is none, and so are measured ones; where
+    nothing can be measured, there are no names of them.
     """
     for damper, motion in journals.items():
         static_x, static_y = motion.coefficients[0] / motion.clearance
@@ -160,6 +169,8 @@ def eccentricities(journals: Journals, others: Journals) -> Named:
         yield f"{damper}/static_y", float(static_y)
         other = others[damper].eccentricity_max if damper in others else math.nan
         yield f"{damper}/other_branch/max", other
+        if measured is not None:
+            yield f"{damper}/measured/max", measured.get(damper, math.nan)
 
 
 def named(message: JointState) -> Named:

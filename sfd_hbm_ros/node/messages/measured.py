@@ -19,7 +19,8 @@ _NAME = re.compile(rf"[^/]+/[xy]/(?:0x|{_ORDER}x/(?:amplitude|phase))")
 def read_measured(message: JointState) -> dict[str, float]:
     """Return the measured harmonics of all dampers, named as in `harmonics_message`.
 
-    A phase needs its amplitude; without a keyphasor there are amplitudes alone.
+    A phase needs its amplitude; without a keyphasor there are amplitudes alone. A phase that is
+    NaN was not measured, and is left out.
 
     Raises
     ------
@@ -34,6 +35,8 @@ def read_measured(message: JointState) -> dict[str, float]:
                 f"{show(name)} must be the name of a harmonic: DAMPER/x/0x, "
                 "DAMPER/x/1x/amplitude, DAMPER/x/1x/phase or the like"
             )
+        if math.isnan(value) and name.endswith("/phase"):
+            continue
         is_amplitude = name.endswith("/amplitude")
         if not math.isfinite(value) or (is_amplitude and value < 0.0):
             allowed = "finite number of at least 0" if is_amplitude else "finite number"
@@ -41,8 +44,10 @@ def read_measured(message: JointState) -> dict[str, float]:
         if name in measured:
             raise InputError(f"{show_key(name)} must be given once")
         measured[name] = value
-    if not measured:
+    if not message.name:
         raise InputError("name must hold the names of measured harmonics, it is empty")
+    if not measured:
+        raise InputError("position must hold measured numbers, they are all NaN")
     for name in measured:
         stem, _, part = name.rpartition("/")
         if part == "phase" and f"{stem}/amplitude" not in measured:

@@ -3,6 +3,7 @@
 import math
 
 from sfd_hbm_ros.response.curves.jumps import Direction
+from sfd_hbm_ros.response.tracking.measurements import UNSEEN, Seen
 from sfd_hbm_ros.response.warning.alarm import AlarmState
 from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
 from sfd_hbm_ros.response.warning.limits import Cause, Side
@@ -26,6 +27,7 @@ def advice(
     eccentricity: float,
     now: float,
     rounding: Rounding | None = None,
+    seen: Seen = UNSEEN,
 ) -> str:
     """Return the sentence.
 
@@ -41,15 +43,31 @@ def advice(
         Time by the alarm's clock [s].
     rounding : Rounding, optional
         What rounds the numbers, and has rounded those of the sentences before.
+    seen : Seen, optional
+        What measured orbits say. Where the model is another's, what it says is called doubtful.
     """
     rounding = rounding or Rounding()
     ahead = _about_responses if outlook.others else _about_one
     parts = (
+        _about_doubt(seen, rounding),
         ahead(alarm, outlook, eccentricity, now, rounding),
         _about_level(alarm, now, rounding),
         _about_alarm(alarm, now, rounding),
     )
     return "".join(parts)
+
+
+def _about_doubt(seen: Seen, rounding: Rounding) -> str:
+    """Why what follows is doubtful, if it is."""
+    if not seen.differs:
+        return ""
+    shown = rounding.nearest("disagreement", 100.0 * seen.disagreement, 10.0)
+    measured = ""
+    if math.isfinite(seen.eccentricity):
+        eccentricity = rounding.nearest("measured", seen.eccentricity, 0.01)
+        measured = f", at a measured eccentricity of {eccentricity:.2f}"
+    limit = f"the limit is {100.0 * seen.threshold:.3g} %"
+    return f"Doubtful, as model and machine differ by about {shown:.0f} %, {limit}{measured}: "
 
 
 def _about_one(

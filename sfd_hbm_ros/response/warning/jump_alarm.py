@@ -12,7 +12,7 @@ from sfd_hbm_ros.machine.errors import MachineError, show
 from sfd_hbm_ros.machine.parts import Part, plain, read
 from sfd_hbm_ros.machine.rules import number
 from sfd_hbm_ros.response.warning.alarm import Alarm, AlarmMemory, AlarmState
-from sfd_hbm_ros.response.warning.limits import LIMITS, Cause, Switches, readings
+from sfd_hbm_ros.response.warning.limits import FAR, LIMITS, Cause, Switches, readings
 from sfd_hbm_ros.response.warning.outlook import Outlook
 from sfd_hbm_ros.response.warning.settings import AlarmSettings, Level
 
@@ -62,6 +62,7 @@ class JumpAlarm:
         now: float,
         others: Mapping[str, float] = _NONE,
         settings: AlarmSettings | None = None,
+        doubtful: bool = False,
     ) -> None:
         """Take what is known of a machine now.
 
@@ -79,11 +80,17 @@ class JumpAlarm:
             Further readings, by the names of their `limits`; those left out are unknown.
         settings : AlarmSettings, optional
             Thresholds and times as they are for now; those of the alarm if left out.
+        doubtful : bool, optional
+            Whether model and machine differ. Then there is a warning whatever the model says, and
+            no error that is the model's.
         """
         given = {**readings(outlook, eccentricity), **others}
         settings = settings or self.settings
         for level, alarm in self.alarms.items():
-            alarm.update(self._switches[level].update(given, settings), now, settings)
+            believed = {**given, **FAR} if doubtful and level is Level.ERROR else given
+            present = self._switches[level].update(believed, settings)
+            present = present or (doubtful and level is Level.WARN)
+            alarm.update(present, now, settings)
 
     def causes(self, now: float) -> list[Cause]:
         """The limits that hold the level which is shown; none where a delay or the latch does."""

@@ -60,8 +60,21 @@ MARGIN_PERCENT = Limit(
 TIME = Limit("time", "time_{}", "time to the jump", " s", digits=1)
 ECCENTRICITY = Limit("eccentricity", "eccentricity_{}", "eccentricity", above=True, digits=2)
 
-LIMITS = (MARGIN, MARGIN_PERCENT, TIME, ECCENTRICITY)
+MEASURED = Limit(
+    "measured_eccentricity",
+    "eccentricity_{}",
+    "measured eccentricity",
+    above=True,
+    digits=2,
+)
+
+LIMITS = (MARGIN, MARGIN_PERCENT, TIME, ECCENTRICITY, MEASURED)
 """All that raises the alarm."""
+
+FAR = {
+    limit.name: -math.inf if limit.above else math.inf for limit in LIMITS if limit is not MEASURED
+}
+"""Readings of what a model tells that hold no alarm."""
 
 
 def readings(outlook: Outlook, eccentricity: float) -> dict[str, float]:

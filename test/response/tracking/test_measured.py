@@ -7,7 +7,13 @@ import pytest
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.machine import override_all
-from sfd_hbm_ros.response.tracking.measured import agreement, named_harmonics, verdict
+from sfd_hbm_ros.response.tracking.measured import (
+    FLOOR,
+    agreement,
+    named_harmonics,
+    unit_hint,
+    verdict,
+)
 
 from ...hbm.machines import PAPER
 
@@ -121,3 +127,70 @@ def test_disagreement_is_the_difference_of_phasors():
         expected = abs(np.exp(1j * turn) - 1.0)
         found = agreement(measured, responses()[0]).disagreement
         assert found == pytest.approx(expected, abs=1e-12)
+
+
+@cache
+def circle():
+    """The response without gravity, a circle, of which the orders above 1 are rounding."""
+    return solve(HarmonicBalance(PAPER, Harmonics(3)), 3700.0 * RPM)
+
+
+def test_phase_of_what_is_no_vibration_is_not_a_number():
+    clearance = circle().journals["damper_1"].clearance
+    named = named_harmonics(circle().journals)
+    amplitudes = {name: value for name, value in named.items() if name.endswith("/amplitude")}
+    assert len(amplitudes) == 6
+    for name, amplitude in amplitudes.items():
+        small = amplitude < FLOOR * clearance
+        assert np.isnan(named[name.replace("amplitude", "phase")]) == small
+        assert small == ("/1x/" not in name)
+
+
+def test_residual_of_a_phase_below_the_floor_is_not_a_number():
+    stem, clearance = "damper_1/x/1x", circle().journals["damper_1"].clearance
+    for amplitude, second in ((0.5 * FLOOR * clearance, 2e-5), (1e-4, 0.5 * FLOOR * clearance)):
+        measured = {f"{stem}/amplitude": amplitude, f"{stem}/phase": 1.0}
+        measured |= {"damper_1/x/2x/amplitude": second, "damper_1/x/2x/phase": 1.0}
+        found = agreement(measured, circle())
+        assert np.isnan(found.residuals[f"{stem}/phase"]) == (amplitude < FLOOR * clearance)
+        assert np.isnan(found.residuals["damper_1/x/2x/phase"])  # the prediction has none
+        assert np.isfinite(found.disagreement)
+
+
+CLEARANCES = {"damper_1": 2.54e-4, "b damper": 1e-4}
+
+
+@pytest.mark.parametrize(
+    ("measured", "hint"),
+    [
+        ({"damper_1/x/1x/amplitude": 2.5e-3, "damper_1/x/1x/phase": 120.0}, ""),
+        ({"damper_9/x/1x/amplitude": 120.0}, ""),
+        (
+            {"damper_1/x/0x": -3.0, "damper_1/x/1x/amplitude": 120.6},
+            "damper_1/x/1x/amplitude must be in m, where 120.6 m is 4.75e+05 times the clearance: "
+            "were 120.6 um meant, which are 0.0001206 m?",
+        ),
+        ({"damper_1/x/1x/amplitude": 0.12}, "were 0.12 mm meant, which are 0.00012 m?"),
+        ({"damper_1/x/1x/amplitude": 4.7}, "were 4.7 mil meant, which are 0.00011938 m?"),
+        ({"b damper/y/0x": -0.4}, "were -0.4 of the clearance meant, which are -4e-05 m?"),
+        ({"damper_1/x/1x/amplitude": 1e9}, "1e+09 m is 3.94e+12 times the clearance"),
+    ],
+)
+def test_lengths_in_another_unit_are_told_with_that_unit(measured, hint):
+    assert unit_hint(measured, CLEARANCES).endswith(hint)
+    assert bool(unit_hint(measured, CLEARANCES)) == bool(hint)
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"), [(2.0, "peak to peak amplitudes"), (0.5**0.5, "effective values")]
+)
+@pytest.mark.parametrize("which", [0, 1])
+def test_another_measure_of_all_amplitudes_is_told(which, factor, words):
+    measured = {
+        name: value * (factor if name.endswith("/amplitude") else 1.0)
+        for name, value in orbit(which).items()
+    }
+    assert words in verdict(measured, responses()).message
+    single = {"damper_1/x/1x/amplitude": measured["damper_1/x/1x/amplitude"]}
+    assert words not in verdict(single, responses()).message  # which may be anything
+    assert words not in verdict(orbit(which), responses()).message

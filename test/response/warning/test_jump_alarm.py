@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from sfd_hbm_ros.machine import MachineError
 from sfd_hbm_ros.response.curves.jumps import Direction
+from sfd_hbm_ros.response.tracking.measurements import UNSEEN
 from sfd_hbm_ros.response.warning.advice import advice
 from sfd_hbm_ros.response.warning.alarm import AlarmState
 from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
@@ -18,6 +19,7 @@ from sfd_hbm_ros.response.warning.limits import (
     ECCENTRICITY,
     MARGIN,
     MARGIN_PERCENT,
+    MEASURED,
     TIME,
     Approach,
 )
@@ -87,6 +89,40 @@ def test_each_threshold(settings, outlook, eccentricity, level):
     alarm = JumpAlarm(dataclasses.replace(PROMPT, **settings))
     alarm.update(outlook, eccentricity, 0.0)
     assert alarm.level(0.0) is level
+
+
+@pytest.mark.parametrize(("measured", "level"), [(0.5, O), (0.91, W), (0.96, E), (math.nan, O)])
+def test_the_measured_eccentricity_has_the_same_limits(measured, level):
+    alarm = JumpAlarm(PROMPT)
+    alarm.update(below_a_jump(1000.0), 0.31, 0.0, {MEASURED.name: measured})
+    assert alarm.level(0.0) is level
+    assert [cause.limit for cause in alarm.causes(0.0)] == ([MEASURED] if level else [])
+    alarm.update(below_a_jump(1000.0), 0.31, 1.0, {MEASURED.name: -math.inf})
+    assert alarm.level(1.0) is O  # as nothing is measured any more
+
+
+@pytest.mark.parametrize(
+    ("margin", "eccentricity", "measured", "level"),
+    [
+        (1000.0, 0.31, 0.5, W),
+        (10.0, 0.31, 0.5, W),
+        (10.0, 0.97, 0.5, W),
+        (1000.0, 0.31, 0.96, E),
+        (10.0, 0.97, math.nan, W),
+    ],
+)
+@pytest.mark.parametrize("before", [1000.0, 10.0])
+def test_while_the_model_is_doubted_it_warns_and_reports_no_error(
+    before, margin, eccentricity, measured, level
+):
+    alarm = after(PROMPT, before)
+    given = below_a_jump(margin), eccentricity, 1.0, {MEASURED.name: measured}
+    alarm.update(*given, doubtful=True)
+    assert alarm.level(1.0) is level
+    seen = UNSEEN._replace(disagreement=1.1, differs=True, threshold=0.15)
+    sentence = advice(alarm, below_a_jump(margin), eccentricity, 1.0, seen=seen)
+    told = "Doubtful, as model and machine differ by about 110 %, the limit is 15 %: "
+    assert sentence.startswith(told)
 
 
 def test_what_is_not_computable_ends_no_alarm():
