@@ -27,7 +27,8 @@ from sfd_hbm_ros.response.tracking.tracked import BranchName, Tracked, branch_na
 from sfd_hbm_ros.rotor import ResonanceError
 from sfd_hbm_ros.threads import one_blas_thread
 
-_STUCK = 2  # searches broken off in a row, after which their start is given up
+_STUCK = 2.0  # searches broken off in a row, after which their start is given up
+_BUSY = 0.1  # what one counts for which the computer was too busy
 
 
 class _Known(NamedTuple):
@@ -36,7 +37,7 @@ class _Known(NamedTuple):
     last: OperatingPoint | None = None
     settled: bool = False  # whether the history tells the branch
     origin: float | None = None  # speed from which a response not settled was followed
-    stuck: int = 0  # searches in a row that were broken off
+    stuck: float = 0.0  # searches in a row that were broken off
 
 
 class Tracker:
@@ -160,7 +161,7 @@ class Tracker:
         if not 0.0 < speed < math.inf:
             reason = f"speed: {speed} rad/s is not allowed, it must be positive and finite"
             return Tracked(no_solution(self._guide.balance, speed, reason))
-        before = self._excursion.returned(speed, time, self._known)
+        before, busy = self._excursion.returned(speed, time, self._known), False
         try:
             with np.errstate(all="ignore"):  # where numbers overflow there is no solution
                 if before is not None:
@@ -171,19 +172,20 @@ class Tracker:
                     return Tracked(point.solution)
                 self._learn(last=point)
                 tracked = self._tracked(point)
-                self._learn(stuck=0)
+                self._learn(stuck=0.0)
                 away, wrong = self._excursion.away, before is not None
                 return replace(tracked, doubtful=away, wrong_before=wrong)
         except ResonanceError as error:
             return Tracked(no_solution(self._guide.balance, speed, str(error)))
         except TimeLimitError as error:
             reason = f"no solution was found within {self._patience:g} s of processor time"
-            if error.busy:
+            busy = error.busy
+            if busy:
                 elapsed = ELAPSED * self._patience
                 reason = f"no solution was found within {elapsed:g} s, as the computer is busy"
         except Exception as error:  # a speed or a machine beyond what numbers can hold
             reason = f"{type(error).__name__}: {error}"
-        self._break_off()
+        self._break_off(busy)
         return Tracked(no_solution(self._guide.balance, speed, reason))
 
     def _advanced(self, speed: float) -> OperatingPoint:
@@ -197,9 +199,12 @@ class Tracker:
         self._learn(origin=self._known.origin or speed)
         return pursued(self._guide, last, speed, 0.5 * self._patience)
 
-    def _break_off(self) -> None:
-        """Note that a search was broken off, and after `_STUCK` forget where it started."""
-        stuck = self._known.stuck + 1
+    def _break_off(self, busy: bool) -> None:
+        """Note that a search was broken off, and after `_STUCK` forget where it started.
+
+        On a busy computer that happens to searches that lead somewhere, too: they count less.
+        """
+        stuck = self._known.stuck + (_BUSY if busy else 1.0)
         self._known = self._known._replace(stuck=stuck) if stuck < _STUCK else _Known()
         self._beside = None
 
