@@ -26,8 +26,8 @@ from sfd_hbm_ros.hbm.truncation import (
 )
 from sfd_hbm_ros.report.units import length_text
 from sfd_hbm_ros.response.curves.coexisting import coexisting_solutions
+from sfd_hbm_ros.response.curves.peaks import greatest_of_disks
 from sfd_hbm_ros.response.errors import NoSolutionError
-from sfd_hbm_ros.response.responses import disk_vibrations
 from sfd_hbm_ros.units import RPM
 
 _SAME_RESPONSE = 0.05  # of the clearance, by which more harmonics may move a response
@@ -134,9 +134,8 @@ def _greatest(balance: HarmonicBalance, solution: Solution) -> dict[str, Any] | 
     """The greatest vibration of any disk [m], zero to peak."""
     if not solution.converged:
         return None
-    vibrations = disk_vibrations(balance, solution)
-    disk = max(vibrations, key=lambda name: vibrations[name], default=None)
-    return None if disk is None else {"of": disk, "vibration": vibrations[disk]}
+    found = greatest_of_disks(balance, solution.speed, solution)
+    return None if found is None else {"of": found.disk, "vibration": found.vibration}
 
 
 def _damper(motion: JournalMotion) -> dict[str, Any]:
@@ -189,7 +188,9 @@ def _text(found: AccurateSolution, stable: bool, others: Sequence[_Response]) ->
 
 def _others_text(stable: bool, others: Sequence[_Response]) -> Iterator[str]:
     """What else there is at the speed, and how to see it."""
-    if not stable and not any(other.stable for other in others):
+    if not stable and any(other.stable for other in others):
+        yield "the machine cannot stay on this response, as it is unstable"
+    elif not stable:
         yield "no stable response was found at this speed: the machine cannot stay on any of these"
     if stable and any(other.stable for other in others):
         yield "bistable: which of the stable responses the machine is on depends on its history"

@@ -15,8 +15,8 @@ from sfd_hbm_ros.report.units import length_text
 from sfd_hbm_ros.response.curves.accuracy import curve_error
 from sfd_hbm_ros.response.curves.judged import CurveBranch
 from sfd_hbm_ros.response.curves.jumps import Direction, Jump
-from sfd_hbm_ros.response.curves.peaks import Peak
-from sfd_hbm_ros.response.curves.summary import DiskVibration, Mark, Summary
+from sfd_hbm_ros.response.curves.peaks import DiskVibration, Peak
+from sfd_hbm_ros.response.curves.summary import Mark, Summary
 from sfd_hbm_ros.response.responses import Response, vibration
 from sfd_hbm_ros.units import RPM
 

@@ -6,11 +6,13 @@ from sfd_hbm_ros.hbm.bracketing import zero_between
 from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.points import Point
 
-_ACCURACY = 1e-8  # of the arc's step in which an event lies
-
 
 def locate(
-    branch: Branch, before: Point, after: Point, event: Callable[[Point], float]
+    branch: Branch,
+    before: Point,
+    after: Point,
+    event: Callable[[Point], float],
+    accuracy: float = 1e-8,
 ) -> Point | None:
     """The point of a branch at which a quantity passes through zero.
 
@@ -23,6 +25,8 @@ def locate(
     event : callable
         The quantity, such as ``lambda point: point.value - speed``, ``point.eccentricity - 0.5``,
         or for a fold ``point.tangent[-1]``.
+    accuracy : float
+        Part of the step between both points to which it is located.
 
     Returns
     -------
@@ -39,7 +43,7 @@ def locate(
         return event(point)
 
     try:
-        step = zero_between(quantity, 0.0, length, _ACCURACY * length)
+        step = zero_between(quantity, 0.0, length, accuracy * length)
     except ArithmeticError:
         return None
     quantity(step)

@@ -5,14 +5,17 @@ that is stable there. It is sought with the branch's own equations between two p
 does not depend on where the points of the branch lie or on the range that was followed.
 """
 
+import copy
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sfd_hbm_ros.hbm import HarmonicBalance
 from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.events import locate
 from sfd_hbm_ros.hbm.family import ParameterFamily
@@ -36,9 +39,31 @@ _SHIFT = 1e-4  # along the arc, over which the vibration is differenced
 _FLAT = 1e-7  # slope of the vibration, of itself over a step of the arc, that is taken to be none
 _LONG = 0.01  # of the parameter, a step in which a peak and a dip might hide
 _HALVINGS = 6  # of a long step at most
+_ACCURACY = 1e-6  # of a step of the arc
 _SMOOTH = 0.001  # of the vibration, by which a cubic may err in the middle of a step
 
-Measure = Callable[[Response], Array]
+Measure = Callable[[float, Response], Array]
+
+
+class DiskVibration(NamedTuple):
+    """The greatest vibration of any disk at a point of a curve.
+
+    Attributes
+    ----------
+    disk : str
+        Its name.
+    vibration : float
+        Greatest distance from its mean position [m], zero to peak.
+    value : float
+        The parameter: for a speed [rad/s].
+    response : Solution or QuasiPeriodicResponse
+        The response.
+    """
+
+    disk: str
+    vibration: float
+    value: float
+    response: Response
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,51 +94,103 @@ class Peak:
 
 
 @one_blas_thread
-def damper_peaks(curve: ResponseCurve) -> list[Peak]:
-    """Peaks of the vibration of every damper's journal, in rising order of the parameter."""
-    return _peaks(curve, curve.dampers, lambda _, response: vibrations_of_dampers(response))
+class CurveVibrations:
+    """The vibrations along a response curve, and their peaks.
 
-
-@one_blas_thread
-def disk_peaks(curve: ResponseCurve) -> list[Peak]:
-    """Peaks of the vibration of every disk over the speed, in rising order of it.
-
-    Where another entry than the speed varies there are none.
+    Parameters
+    ----------
+    curve : ResponseCurve
+        The curve. Its detached branches are left aside.
     """
-    if isinstance(curve.family, ParameterFamily):
-        return []
-    names = tuple(disk.name for disk in curve.balance.machine.disks)
-    return _peaks(curve, names, vibrations_of_disks)
+
+    def __init__(self, curve: ResponseCurve) -> None:
+        self._curve = curve
+
+    @cached_property
+    def damper_peaks(self) -> list[Peak]:
+        """Peaks of every damper's journal, in rising order of the parameter."""
+        return _peaks(self._damper_arcs, self._curve.dampers)
+
+    @cached_property
+    def disk_peaks(self) -> list[Peak]:
+        """Peaks of every disk over the speed, in rising order of it.
+
+        Where another entry than the speed varies there are none.
+        """
+        if isinstance(self._curve.family, ParameterFamily):
+            return []
+        return _peaks(self._disk_arcs, [disk.name for disk in self._curve.balance.machine.disks])
+
+    def greatest_of_disks(self) -> DiskVibration | None:
+        """The greatest stable vibration of any disk, at the known points and at the peaks.
+
+        None where the machine has no disk or no response is stable.
+        """
+        found = [
+            DiskVibration(peak.of, peak.vibration, peak.value, peak.response)
+            for peak in self.disk_peaks
+        ]
+        for arc in self._disk_arcs:
+            for node in arc.nodes:
+                if node.stable and np.isfinite(node.heights).any():
+                    column = int(np.nanargmax(node.heights))
+                    disk = self._curve.balance.machine.disks[column].name
+                    height = float(node.heights[column])
+                    found.append(DiskVibration(disk, height, node.value, node.response))
+        return max(found, key=lambda one: one.vibration, default=None)
+
+    @cached_property
+    def _damper_arcs(self) -> "list[_Arc]":
+        return [
+            _Arc(branch, _vibrations_of_dampers)
+            for branch in self._curve.branches
+            if len(branch.values) > 1
+        ]
+
+    @cached_property
+    def _disk_arcs(self) -> "list[_Arc]":
+        """The same points: to recover the motion of the whole rotor takes its time."""
+        return [
+            arc.measuring(partial(_vibrations_of_disks, arc.branch)) for arc in self._damper_arcs
+        ]
 
 
-def vibrations_of_dampers(response: Response) -> Array:
+def greatest_of_disks(
+    balance: HarmonicBalance, value: float, response: Response
+) -> DiskVibration | None:
+    """The greatest vibration of any disk in a response of a machine.
+
+    None where it has no disk or a harmonic meets an undamped resonance of its shaft.
+    """
+    try:
+        vibrations = disk_vibrations(balance, response)
+    except ResonanceError:
+        return None
+    disk = max(vibrations, key=lambda name: vibrations[name], default=None)
+    return None if disk is None else DiskVibration(disk, vibrations[disk], value, response)
+
+
+def _vibrations_of_dampers(_: float, response: Response) -> Array:
     """Vibration of every damper's journal [m], zero to peak, (dampers,)."""
     return np.array([vibration(response, name) for name in response.journals])
 
 
-def vibrations_of_disks(branch: CurveBranch, response: Response) -> Array:
-    """Vibration of every disk of a response on a branch over the speed [m], (disks,).
-
-    They are NaN where a harmonic meets a resonance of the shaft with its journals held.
-    """
-    balance = branch.family.at(response.speed).balance
+def _vibrations_of_disks(branch: CurveBranch, value: float, response: Response) -> Array:
+    """Vibration of every disk [m], (disks,); NaN at a resonance with the journals held."""
+    balance = branch.family.at(value).balance
     try:
         return np.array([*disk_vibrations(balance, response).values()])
     except ResonanceError:
         return np.full(len(balance.machine.disks), np.nan)
 
 
-def _peaks(
-    curve: ResponseCurve,
-    names: Sequence[str],
-    measure: Callable[[CurveBranch, Response], Array],
-) -> list[Peak]:
-    found: list[Peak] = []
-    for branch in curve.branches:
-        if len(branch.values) > 1 and names:
-            arc = _Arc(branch, partial(measure, branch))
-            for column, name in enumerate(names):
-                found += _peaks_on(arc, name, column)
+def _peaks(arcs: "list[_Arc]", names: Sequence[str]) -> list[Peak]:
+    found = [
+        peak
+        for arc in arcs
+        for column, name in enumerate(names)
+        for peak in _peaks_on(arc, name, column)
+    ]
     return sorted(found, key=lambda peak: peak.value)
 
 
@@ -128,7 +205,9 @@ def _peaks_on(arc: "_Arc", name: str, column: int) -> Iterator[Peak]:
             before.stable_after and before.slopes[column] > flat and after.slopes[column] < -flat
         ):
             continue
-        top = locate(arc.path, before.point, after.point, lambda at: arc.slopes(at)[column])
+        top = locate(
+            arc.path, before.point, after.point, lambda at: arc.slopes(at)[column], _ACCURACY
+        )
         if top is not None:
             height = float(arc.heights(top)[column])
             factor = _amplification_factor(arc, heights, column, step, top)
@@ -161,7 +240,9 @@ def _amplification_factor(
             node = arc.nodes[i]
             if heights[i] < level:
                 ends = (nearer, node.point) if way.step > 0 else (node.point, nearer)
-                side = locate(arc.path, *ends, lambda at: arc.heights(at)[column] - level)
+                side = locate(
+                    arc.path, *ends, lambda at: arc.heights(at)[column] - level, _ACCURACY
+                )
                 sides += [] if side is None else [side.value]
                 break
             if not node.stable:
@@ -191,20 +272,23 @@ class _Arc:
         end = max(low, high, key=lambda one: abs(one - start))
         self.path = Branch(branch.family, branch.solutions[0].unknowns, start, end, (low, high))
         known = [
-            _Node(
-                self,
-                measure(response),
-                kind is None,
-                None in branch.instability[i : i + 2],
-                index=i,
-            )
-            for i, (response, kind) in enumerate(
-                zip(branch.solutions, branch.instability, strict=True)
-            )
+            _Node(self, kind is None, None in branch.instability[i : i + 2], i)
+            for i, kind in enumerate(branch.instability)
         ]
         self.nodes: list[_Node] = [known[0]]
         for before, after in pairwise(known):
             self.nodes += [*self._between(before, after, _HALVINGS), after]
+
+    def measuring(self, measure: Measure) -> "_Arc":
+        """The same points with another measure."""
+        other = copy.copy(self)
+        other._measure = measure
+        other.nodes = [node.on(other) for node in self.nodes]
+        return other
+
+    def measured(self, value: float, response: Response) -> Array:
+        """The measures of a response."""
+        return self._measure(value, response)
 
     def length(self, before: "_Node", after: "_Node") -> float:
         """Distance of two neighbours along the arc."""
@@ -240,7 +324,7 @@ class _Arc:
     def _heights(self, value: float, x: Array) -> Array:
         """The measures of unknowns, whether or not they solve the equations."""
         speed = None if isinstance(self.branch.family, ParameterFamily) else value
-        return self._measure(with_unknowns(self.branch.solutions[0], speed, x))
+        return self._measure(value, with_unknowns(self.branch.solutions[0], speed, x))
 
     def _between(self, before: "_Node", after: "_Node", halvings: int) -> "list[_Node]":
         """Nodes between two others, as many as show how the measures go there."""
@@ -251,7 +335,7 @@ class _Arc:
         point = self.path.corrector.corrected(before.point, 0.5 * length, [after.point])
         if point is None:
             return []
-        middle = _Node(self, self.heights(point), before.stable_after, before.stable_after, point)
+        middle = _Node(self, before.stable_after, before.stable_after, point)
         # the cubic that has the heights and the slopes of both ends
         cubic = 0.5 * (before.heights + after.heights)
         cubic = cubic + 0.125 * length * (before.slopes - after.slopes)
@@ -272,35 +356,50 @@ class _Arc:
 class _Node:
     """A point of an arc with its measures; what takes time is computed when it is asked for.
 
-    Attributes
+    Parameters
     ----------
-    heights : (k,) array
-        The measures.
+    arc : _Arc
+        The arc.
     stable, stable_after : bool
         Whether it is stable, and the step from it to the next.
+    place : Point or int
+        The point itself, or the index of one of the branch's own.
     """
 
-    def __init__(
-        self,
-        arc: _Arc,
-        heights: Array,
-        stable: bool,
-        stable_after: bool,
-        point: Point | None = None,
-        index: int = 0,
-    ) -> None:
-        self._arc, self._point, self._index = arc, point, index
-        self.heights, self.stable, self.stable_after = heights, stable, stable_after
+    def __init__(self, arc: _Arc, stable: bool, stable_after: bool, place: Point | int) -> None:
+        self._arc, self._place = arc, place
+        self.stable, self.stable_after = stable, stable_after
+
+    def on(self, arc: _Arc) -> "_Node":
+        """The same point, on an arc of other measures."""
+        place = self.__dict__.get("point", self._place)
+        node = _Node(arc, self.stable, self.stable_after, place)
+        node.__dict__["response"] = self.response
+        return node
 
     @property
     def value(self) -> float:
         """The parameter."""
-        return self._point.value if self._point else float(self._arc.branch.values[self._index])
+        if isinstance(self._place, Point):
+            return self._place.value
+        return float(self._arc.branch.values[self._place])
+
+    @cached_property
+    def response(self) -> Response:
+        """The response."""
+        if isinstance(self._place, Point):
+            return self._arc.response(self._place)
+        return self._arc.branch.solutions[self._place]
 
     @cached_property
     def point(self) -> Point:
         """The point with its tangent."""
-        return self._point or self._arc.known(self._index)
+        return self._place if isinstance(self._place, Point) else self._arc.known(self._place)
+
+    @cached_property
+    def heights(self) -> Array:
+        """The measures, (k,)."""
+        return self._arc.measured(self.value, self.response)
 
     @cached_property
     def slopes(self) -> Array:

@@ -18,9 +18,13 @@ from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.journey import Leg, legs
 from sfd_hbm_ros.response.curves.judged import CurveBranch
 from sfd_hbm_ros.response.curves.jumps import Direction, Jump, jump_of, leaps, leaps_from
-from sfd_hbm_ros.response.curves.peaks import Peak, damper_peaks, disk_peaks
-from sfd_hbm_ros.response.responses import Response, disk_vibrations, vibration
-from sfd_hbm_ros.rotor import ResonanceError
+from sfd_hbm_ros.response.curves.peaks import (
+    CurveVibrations,
+    DiskVibration,
+    Peak,
+    greatest_of_disks,
+)
+from sfd_hbm_ros.response.responses import Response, vibration
 from sfd_hbm_ros.units import RPM
 
 _SMALL_CHANGE = 0.01  # of the clearance, in every damper: a jump that nobody sees
@@ -53,27 +57,6 @@ class Mark:
     def vibration(self) -> float:
         """Vibration of the damper's journal [m], zero to peak."""
         return np.nan if self.response is None else vibration(self.response, self.damper)
-
-
-class DiskVibration(NamedTuple):
-    """The greatest vibration of any disk at a point of a curve.
-
-    Attributes
-    ----------
-    disk : str
-        Its name.
-    vibration : float
-        Greatest distance from its mean position [m], zero to peak.
-    value : float
-        The parameter: for a speed [rad/s].
-    response : Solution or QuasiPeriodicResponse
-        The response.
-    """
-
-    disk: str
-    vibration: float
-    value: float
-    response: Response
 
 
 class Detached(NamedTuple):
@@ -146,15 +129,15 @@ class Summary:
         """Whether the curve shows a response that a machine can stay on."""
         return any(branch.stable.any() for branch in self.curve.branches)
 
-    @cached_property
+    @property
     def peaks(self) -> list[Peak]:
         """Peaks of the vibration of every damper's journal, in rising order of the parameter."""
-        return damper_peaks(self.curve)
+        return self._vibrations.damper_peaks
 
-    @cached_property
+    @property
     def disk_peaks(self) -> list[Peak]:
         """Peaks of the vibration of every disk, in rising order of the speed."""
-        return disk_peaks(self.curve)
+        return self._vibrations.disk_peaks
 
     @cached_property
     def highest_peak(self) -> Peak | None:
@@ -199,27 +182,18 @@ class Summary:
 
         None where the machine has no disk or no response is stable.
         """
-        found = [self.vibrating(value, response) for value, response in self._stable_points()]
+        found = [self._vibrations.greatest_of_disks()]
         found += [self.vibrating(jump.value, jump.before) for jump in self.jumps]
         known = [one for one in found if one is not None]
-        known += [
-            DiskVibration(peak.of, peak.vibration, peak.value, peak.response)
-            for peak in self.disk_peaks
-        ]
         return max(known, key=lambda one: one.vibration, default=None)
 
     def vibrating(self, value: float, response: Response) -> DiskVibration | None:
-        """The greatest vibration of any disk in a response of the curve.
+        """The greatest vibration of any disk in a response of the curve, if it has any."""
+        return greatest_of_disks(self.curve.family.at(value).balance, value, response)
 
-        None where the machine has no disk or a harmonic meets an undamped resonance of its shaft.
-        """
-        try:
-            balance = self.curve.family.at(value).balance
-            vibrations = disk_vibrations(balance, response)
-        except ResonanceError:
-            return None
-        disk = max(vibrations, key=lambda name: vibrations[name], default=None)
-        return None if disk is None else DiskVibration(disk, vibrations[disk], value, response)
+    @cached_property
+    def _vibrations(self) -> CurveVibrations:
+        return CurveVibrations(self.curve)
 
     @cached_property
     def hysteresis(self) -> float | None:

@@ -17,7 +17,6 @@ from sfd_hbm_ros.machine import (
     override_all,
 )
 from sfd_hbm_ros.response.curves.curve import parameter_curve, response_curve
-from sfd_hbm_ros.response.curves.peaks import disk_peaks
 from sfd_hbm_ros.response.curves.summary import Summary
 from sfd_hbm_ros.response.responses import disk_vibrations, vibration
 from sfd_hbm_ros.rotor import critical_speeds, hold_journals
@@ -138,14 +137,14 @@ def test_an_overhung_rotor_reports_its_critical_speed_and_not_its_sag():
     sag = summary.curve.branches[0].solutions[0].eccentricity_max
     assert summary.peak.vibration < 0.2 * sag
     assert free < summary.peak.value < held  # the film stiffens what the springs hold
-    [fan] = [one for one in disk_peaks(summary.curve) if one.value < held]
+    [fan] = [one for one in summary.disk_peaks if one.value < held]
     assert fan.of == "fan"
     assert fan.value == pytest.approx(summary.peak.value, rel=0.05)
 
 
 def test_peaks_of_disks_are_those_of_the_whole_rotor():
     summary = light(True)
-    peaks = disk_peaks(summary.curve)
+    peaks = summary.disk_peaks
     assert {one.of for one in peaks} == {"disk_1", "disk_2", "disk_3"}
     balance = summary.curve.balance
     for peak in peaks:
