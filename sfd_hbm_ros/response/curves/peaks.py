@@ -5,6 +5,7 @@ that is stable there. It is sought with the branch's own equations between two p
 does not depend on where the points of the branch lie or on the range that was followed.
 """
 
+import contextlib
 import copy
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -93,7 +94,6 @@ class Peak:
     amplification_factor: float | None
 
 
-@one_blas_thread
 class CurveVibrations:
     """The vibrations along a response curve, and their peaks.
 
@@ -107,11 +107,13 @@ class CurveVibrations:
         self._curve = curve
 
     @cached_property
+    @one_blas_thread
     def damper_peaks(self) -> list[Peak]:
         """Peaks of every damper's journal, in rising order of the parameter."""
         return _peaks(self._damper_arcs, self._curve.dampers)
 
     @cached_property
+    @one_blas_thread
     def disk_peaks(self) -> list[Peak]:
         """Peaks of every disk over the speed, in rising order of it.
 
@@ -121,6 +123,7 @@ class CurveVibrations:
             return []
         return _peaks(self._disk_arcs, [disk.name for disk in self._curve.balance.machine.disks])
 
+    @one_blas_thread
     def greatest_of_disks(self) -> DiskVibration | None:
         """The greatest stable vibration of any disk, at the known points and at the peaks.
 
@@ -196,22 +199,25 @@ def _peaks(arcs: "list[_Arc]", names: Sequence[str]) -> list[Peak]:
 
 def _peaks_on(arc: "_Arc", name: str, column: int) -> Iterator[Peak]:
     """Peaks of one column of an arc's heights."""
-    nodes = arc.nodes
-    heights = np.array([node.heights[column] for node in nodes])
+    heights = np.array([node.heights[column] for node in arc.nodes])
     for step in _steps_with_a_maximum(heights):
-        before, after = nodes[step : step + 2]
-        flat = _FLAT * max(heights[step : step + 2]) / arc.length(before, after)
-        if not (
-            before.stable_after and before.slopes[column] > flat and after.slopes[column] < -flat
-        ):
-            continue
-        top = locate(
-            arc.path, before.point, after.point, lambda at: arc.slopes(at)[column], _ACCURACY
-        )
-        if top is not None:
-            height = float(arc.heights(top)[column])
-            factor = _amplification_factor(arc, heights, column, step, top)
-            yield Peak(name, float(top.value), height, arc.response(top), factor)
+        # where branches meet the arc has no tangent
+        with contextlib.suppress(np.linalg.LinAlgError):
+            yield from _peaks_in(arc, heights, name, column, step)
+
+
+def _peaks_in(arc: "_Arc", heights: Array, name: str, column: int, step: int) -> Iterator[Peak]:
+    """The peak between a node and the next, if the measure rises at one and falls at the other."""
+    before, after = arc.nodes[step : step + 2]
+    flat = _FLAT * max(heights[step : step + 2]) / arc.length(before, after)
+    rises = before.slopes[column] > flat and after.slopes[column] < -flat
+    if not (before.stable_after and rises):
+        return
+    top = locate(arc.path, before.point, after.point, lambda at: arc.slopes(at)[column], _ACCURACY)
+    if top is not None:
+        height = float(arc.heights(top)[column])
+        factor = _amplification_factor(arc, heights, column, step, top)
+        yield Peak(name, float(top.value), height, arc.response(top), factor)
 
 
 def _steps_with_a_maximum(heights: Array) -> list[int]:
@@ -331,8 +337,11 @@ class _Arc:
         values = before.value, after.value
         if not halvings or abs(values[1] - values[0]) <= _LONG * max(map(abs, values)):
             return []
-        length = self.length(before, after)
-        point = self.path.corrector.corrected(before.point, 0.5 * length, [after.point])
+        try:
+            length = self.length(before, after)
+            point = self.path.corrector.corrected(before.point, 0.5 * length, [after.point])
+        except np.linalg.LinAlgError:  # where branches meet the arc has no tangent
+            point = None
         if point is None:
             return []
         middle = _Node(self, before.stable_after, before.stable_after, point)
