@@ -1,20 +1,49 @@
-"""A lifecycle node that leaves the executor little to do, and nothing behind."""
+"""A lifecycle node that leaves the executor little to do, nothing behind and no request out."""
 
 from __future__ import annotations
 
 from typing import Any
 
+from lifecycle_msgs.srv import ChangeState, GetAvailableStates, GetAvailableTransitions, GetState
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode, LifecyclePublisher
 from rclpy.publisher import Publisher
+from rclpy.qos import qos_profile_parameters
+from rclpy.service import Service
+
+_LIFECYCLE = {
+    "change_state": ChangeState,
+    "get_state": GetState,
+    "get_available_states": GetAvailableStates,
+    "get_available_transitions": GetAvailableTransitions,
+    "get_transition_graph": GetAvailableTransitions,
+}
+
+_QUEUE = qos_profile_parameters  # reliable, of depth 1000
 
 
 class LeanNode(LifecycleNode):
-    """A lifecycle node whose publishers have no events but those that are asked for.
+    """A lifecycle node for many peers.
 
-    rclpy has every publisher log subscribers whose quality of service does not fit, as those do
-    themselves. Before every callback the executor would look for such events, at each publisher.
+    Its publishers have no events but those that are asked for. rclpy has every publisher log
+    subscribers whose quality of service does not fit, as those do themselves. Before every
+    callback the executor would look for such events, at each publisher.
+
+    Its services have room for a thousand requests, as those of parameters have. With the default,
+    ten, the eleventh that comes to a service during one callback replaces the first, which is
+    never answered.
     """
+
+    def __init__(self, name: str, **options: Any) -> None:
+        # The services of the life cycle would have the default, whatever is asked for.
+        super().__init__(name, enable_communication_interface=False, **options)
+        for service, kind in _LIFECYCLE.items():
+            answer = getattr(self, f"_LifecycleNodeMixin__on_{service}")
+            self.create_service(kind, f"~/{service}", answer)
+
+    def create_service(self, *arguments: Any, **options: Any) -> Service:
+        """See `Node`."""
+        return super().create_service(*arguments, **{"qos_profile": _QUEUE, **options})
 
     def destroy_node(self) -> None:
         """See `Node`; rclpy would leave the state machine, by which others see the node yet."""
