@@ -10,13 +10,13 @@ from dataclasses import replace
 import numpy as np
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
-from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState, PointCloud2
 from std_srvs.srv import Trigger
 
 from sfd_hbm_ros.hbm import Solution
 from sfd_hbm_ros.node.diagnostics import Status
+from sfd_hbm_ros.node.lean_node import LeanNode
 from sfd_hbm_ros.node.messages.curve import curve_arrays_message, response_curve_message
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
@@ -50,7 +50,7 @@ class Curves:
 
     Parameters
     ----------
-    node : LifecycleNode
+    node : LeanNode
         The node.
     parameters : Parameters
         Its parameters.
@@ -69,7 +69,7 @@ class Curves:
         Which of the states of the machine it is that curves were asked for, counted from 1.
     """
 
-    def __init__(self, node: LifecycleNode, parameters: Parameters, operation: Operation) -> None:
+    def __init__(self, node: LeanNode, parameters: Parameters, operation: Operation) -> None:
         self.worker = Worker()
         self.result: CurveResult | None = None
         self.holds = False
@@ -228,6 +228,9 @@ class Curves:
         if self._renewal.due(now, busy):
             self._ask(exactly=False)
         result = self.worker.poll()
+        bug = self.worker.taken_bug()
+        if bug:
+            self._node.get_logger().error(f"unexpected error in the worker process:\n{bug}")
         if result is not None:
             self._adopt(result)
 

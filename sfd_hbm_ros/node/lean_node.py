@@ -11,6 +11,8 @@ from rclpy.publisher import Publisher
 from rclpy.qos import qos_profile_parameters
 from rclpy.service import Service
 
+from sfd_hbm_ros.node.guard import Mishaps
+
 _LIFECYCLE = {
     "change_state": ChangeState,
     "get_state": GetState,
@@ -32,11 +34,17 @@ class LeanNode(LifecycleNode):
     Its services have room for a thousand requests, as those of parameters have. With the default,
     ten, the eleventh that comes to a service during one callback replaces the first, which is
     never answered.
+
+    Attributes
+    ----------
+    mishaps : Mishaps
+        Exceptions that nobody handles.
     """
 
     def __init__(self, name: str, **options: Any) -> None:
         # The services of the life cycle would have the default, whatever is asked for.
         super().__init__(name, enable_communication_interface=False, **options)
+        self.mishaps = Mishaps(self)
         for service, kind in _LIFECYCLE.items():
             answer = getattr(self, f"_LifecycleNodeMixin__on_{service}")
             self.create_service(kind, f"~/{service}", answer)

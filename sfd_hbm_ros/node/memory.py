@@ -9,15 +9,16 @@ from dataclasses import replace
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
-from rclpy.lifecycle import LifecycleNode
 
 from sfd_hbm_ros.machine.safe_file import put_aside, reason
 from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.inputs import InputError
+from sfd_hbm_ros.node.lean_node import LeanNode
 from sfd_hbm_ros.node.operation import Operation
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.prediction import Model, Prediction
 from sfd_hbm_ros.node.watch import Watch
+from sfd_hbm_ros.response.errors import unexpected
 from sfd_hbm_ros.response.tracking.state import State, restore
 from sfd_hbm_ros.response.tracking.state_file import StateFileError, load_state, save_state
 from sfd_hbm_ros.response.warning.jump_alarm import JumpAlarm
@@ -36,7 +37,7 @@ class Memory:
 
     Parameters
     ----------
-    node : LifecycleNode
+    node : LeanNode
         The node.
     parameters : Parameters
         Its parameters.
@@ -47,7 +48,7 @@ class Memory:
     """
 
     def __init__(
-        self, node: LifecycleNode, parameters: Parameters, operation: Operation, watch: Watch
+        self, node: LeanNode, parameters: Parameters, operation: Operation, watch: Watch
     ) -> None:
         self._node = node
         self._parameters = parameters
@@ -83,7 +84,8 @@ class Memory:
                 self._restore(model, self._state)
         except StateFileError as error:
             self._refuse(str(error))
-        except Exception:  # whatever is in it, which is not repeated, the node goes on without
+        except Exception as error:  # whatever is in it, the node goes on without
+            self._node.mishaps.take(error, secret=True)
             self._refuse(f"{self._path}: refused: its state does not fit the machine")
 
     def save(self) -> None:
@@ -216,4 +218,7 @@ class Memory:
         except StateFileError as error:
             failed = str(error)
             self._node.get_logger().error(f"state file {failed}", throttle_duration_sec=_PERIOD)
+        except Exception as error:
+            self._node.mishaps.take(error)
+            failed = f"{self._path}: {unexpected(error)}"
         self._writing, self._failed = None, failed

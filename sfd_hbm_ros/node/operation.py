@@ -8,7 +8,6 @@ from collections.abc import Callable
 from geometry_msgs.msg import WrenchStamped
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
-from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
@@ -16,6 +15,7 @@ from sensor_msgs.msg import JointState
 from sfd_hbm_ros.machine import Load, Machine
 from sfd_hbm_ros.node.dropping import dropping
 from sfd_hbm_ros.node.inputs import Feed, InputError, Pending
+from sfd_hbm_ros.node.lean_node import LeanNode
 from sfd_hbm_ros.node.messages import common as messages
 from sfd_hbm_ros.node.parameters import Parameters
 from sfd_hbm_ros.node.prediction import Model, Prediction
@@ -35,7 +35,7 @@ class Operation:
 
     Parameters
     ----------
-    node : LifecycleNode
+    node : LeanNode
         The node.
     parameters : Parameters
         The node's parameters.
@@ -64,7 +64,7 @@ class Operation:
         Called with every prediction and its stamp [ns], once it has been published.
     """
 
-    def __init__(self, node: LifecycleNode, parameters: Parameters) -> None:
+    def __init__(self, node: LeanNode, parameters: Parameters) -> None:
         self.active = False
         self.model: Model | None = None
         self.prediction: Prediction | None = None
@@ -253,6 +253,8 @@ class Operation:
         self.prediction = prediction = self.model.predict(speed, stamp * 1e-9)
         self.predictions += 1
         self.failures += prediction.failed
+        if prediction.bug is not None:
+            self._node.mishaps.take(prediction.bug)
         header = Time(nanoseconds=stamp), self._parameters["frame_id"]
         journals = prediction.journals
         seen = self.measurements.eccentricities(time.monotonic(), self._parameters["stale_after"])

@@ -11,8 +11,9 @@ import numpy as np
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, JournalMotion, Solution
 from sfd_hbm_ros.hbm.truncation import truncation_error
-from sfd_hbm_ros.machine import Load, Machine
+from sfd_hbm_ros.machine import Load, Machine, MachineError
 from sfd_hbm_ros.node.inputs import Rim
+from sfd_hbm_ros.response.errors import unexpected
 from sfd_hbm_ros.response.tracking.tracked import Tracked
 from sfd_hbm_ros.response.tracking.tracker import Tracker
 
@@ -49,6 +50,8 @@ class Prediction:
     truncation : float
         What more harmonics would add when that was last estimated, of the clearance; NaN where it
         is not known.
+    bug : Exception or None
+        What nobody expected on the way.
     """
 
     speed: float
@@ -60,6 +63,7 @@ class Prediction:
     seconds: float = 0.0
     tracked: Tracked | None = None
     truncation: float = float("nan")
+    bug: Exception | None = None
 
     @property
     def others(self) -> Mapping[str, JournalMotion]:
@@ -166,9 +170,12 @@ class Model:
             # Where numbers overflow there is no solution: that is said, not warned about.
             with np.errstate(all="ignore"):
                 self.balance()
-        except Exception as error:  # a machine beyond what numbers can hold
+        except (ArithmeticError, MachineError, np.linalg.LinAlgError) as error:
+            # A machine beyond what numbers can hold.
             reason = f"the solver gave up: {type(error).__name__}: {error}"
             return Prediction(speed, self.unknown(), True, reason)
+        except Exception as error:
+            return Prediction(speed, self.unknown(), True, unexpected(error), bug=error)
         tracked = self.tracker.predict(speed, measured_at)
         solution = tracked.solution
         begun = solution.converged or solution.residuals
@@ -182,6 +189,7 @@ class Model:
             time.perf_counter() - start,
             tracked if solution.converged else None,
             self._truncation_error(solution) if solution.converged else math.nan,
+            tracked.bug,
         )
 
     def _truncation_error(self, solution: Solution) -> float:

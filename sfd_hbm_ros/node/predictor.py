@@ -16,7 +16,6 @@ from sfd_hbm_ros.machine import Machine, MachineError, read_machine
 from sfd_hbm_ros.node import diagnostics, guard
 from sfd_hbm_ros.node.changes import Changes
 from sfd_hbm_ros.node.curves import Curves
-from sfd_hbm_ros.node.inputs import Drops
 from sfd_hbm_ros.node.lean_node import LeanNode
 from sfd_hbm_ros.node.measurement import Measurement
 from sfd_hbm_ros.node.memory import Memory
@@ -31,9 +30,12 @@ from sfd_hbm_ros.node.self_test import SelfTestService
 from sfd_hbm_ros.node.watch import Watch
 from sfd_hbm_ros.node.what_if import WhatIf
 from sfd_hbm_ros.node.worker.status import with_worker
+from sfd_hbm_ros.response.errors import NoSolutionError, unexpected
+from sfd_hbm_ros.rotor import ResonanceError
 
 _SUCCESS = TransitionCallbackReturn.SUCCESS
-_LOG_PAUSE = 5.0  # s between two log messages about exceptions
+# What a machine may be that cannot be predicted; anything else is a bug.
+_BAD_MACHINE = (MachineError, ParameterError, NoSolutionError, ResonanceError, ArithmeticError)
 
 
 class Predictor(LeanNode):
@@ -52,7 +54,6 @@ class Predictor(LeanNode):
         super().__init__("predictor")
         self._label = "unconfigured"
         self._problem = ""
-        self._exceptions = Drops("requests")
         # not _parameters, which rclpy's Node has of its own
         self._known = Parameters(self)
         self._operation = Operation(self, self._known)
@@ -66,7 +67,7 @@ class Predictor(LeanNode):
         self._oil = OilFeed(self, self._known, self._operation)
         SelfTestService(self)
         self._reporter = Reporter(self, self._hardware, self._statuses)
-        guard.answer_always(self, self.caught)
+        guard.answer_always(self, self.mishaps.take)
         prepare()
         if self._known["autostart"] and self.trigger_configure() == _SUCCESS:
             self.trigger_activate()
@@ -88,8 +89,11 @@ class Predictor(LeanNode):
             self._reporter.step()
             self._memory.restore(model)
         except Exception as error:  # whatever it is, the node stays up and says it
+            known = isinstance(error, _BAD_MACHINE)
+            if not known:
+                self.mishaps.take(error)
             self._release("unconfigured")
-            self._problem = str(error)
+            self._problem = str(error) if known else unexpected(error)
             self.get_logger().error(f"cannot be configured: {self._problem}")
             return TransitionCallbackReturn.FAILURE
         self._label, self._problem = "inactive", ""
@@ -155,12 +159,6 @@ class Predictor(LeanNode):
             done.reason = f"revision {self._curves.revision}"
         return done
 
-    def caught(self, error: Exception) -> None:
-        """Count an exception that a callback raised, and say which."""
-        text = f"{type(error).__name__}: {error}"
-        self._exceptions.drop(text, time.monotonic())
-        self.get_logger().error(f"caught {text}", throttle_duration_sec=_LOG_PAUSE)
-
     def _hardware(self) -> str:
         """Return the name of the machine's file, in every state: its title may be a sentence."""
         return Path(self._known["machine_file"]).stem
@@ -174,7 +172,7 @@ class Predictor(LeanNode):
         model = with_worker(self._curves.added_to(model), self._curves.worker)
         return [
             self._watch.status(),
-            self._measurement.added_to(self._memory.added_to(model)),
+            self._measurement.added_to(self._memory.added_to(self.mishaps.added_to(model))),
             diagnostics.solver_status(work.prediction, work.predictions, work.failures),
             self._curves.range_in(
                 diagnostics.inputs_status(
@@ -185,7 +183,7 @@ class Predictor(LeanNode):
                         self._measurement.feed,
                         self._oil.feed,
                         self._what_if.drops,
-                        self._exceptions,
+                        self.mishaps.requests,
                     ],
                     self._known["stale_after"],
                     time.monotonic(),
@@ -210,7 +208,7 @@ def main() -> int:
 
 def _spin(predictor: Predictor) -> int:
     try:
-        guard.spin(predictor, predictor.caught)
+        guard.spin(predictor, predictor.mishaps.take)
     finally:
         predictor.close()
     return 0

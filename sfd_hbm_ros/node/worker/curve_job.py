@@ -84,10 +84,13 @@ class Failure:
         The reason in words.
     final : bool
         Whether another attempt would end the same way.
+    traceback : str
+        Where it happened, if nobody expected it.
     """
 
     reason: str
     final: bool
+    traceback: str = ""
 
 
 def compute(job: CurveJob, progress: Callable[[float], None]) -> Iterator[CurveResult]:

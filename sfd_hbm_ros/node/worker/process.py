@@ -11,6 +11,7 @@ import os
 import signal
 import sys
 import threading
+import traceback
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from queue import SimpleQueue
@@ -87,7 +88,7 @@ def _answer(number: int, job: CurveJob, connection: Connection[Any, Any], inbox:
         raise
     except Exception as error:  # what it was is for the other process to tell
         reason = f"it raised {type(error).__name__}: {error}"
-        connection.send((number, Failure(reason, final=False)))
+        connection.send((number, Failure(reason, False, traceback.format_exc())))
 
 
 def main() -> None:

@@ -70,6 +70,7 @@ class Worker:
         self.failed = False
         self.problem = ""
         self.replacements = 0
+        self._bug = ""  # traceback of the process's last exception that nobody expected
         self._number = 0  # of the newest job
         self._sent = False  # whether the process has been sent it
         self._start_at = -math.inf
@@ -101,6 +102,11 @@ class Worker:
         if self._child is not None:
             self._watch(self._child)
         return result
+
+    def taken_bug(self) -> str:
+        """Return the traceback of an exception in the process since the last call, if any."""
+        bug, self._bug = self._bug, ""
+        return bug
 
     def close(self) -> None:
         """End the process; afterwards, `poll` would start another."""
@@ -134,6 +140,7 @@ class Worker:
             case Failure(final=True):
                 self.job, self.failed, self.problem = None, True, payload.reason
             case Failure():
+                self._bug = payload.traceback
                 self._fail(payload.reason)
             case int():
                 self.points = payload

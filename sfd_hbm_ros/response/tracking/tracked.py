@@ -54,6 +54,8 @@ class Tracked:
         Whether the speed has just leapt away, so that the next one may show that it was wrong.
     wrong_before : bool
         Whether the speed before was measured wrongly, as this one shows.
+    bug : Exception or None
+        What nobody expected and is why there is no solution: for whoever asks to log.
     """
 
     solution: Solution
@@ -65,6 +67,7 @@ class Tracked:
     other: Solution | None = None
     doubtful: bool = False
     wrong_before: bool = False
+    bug: Exception | None = None
 
     @property
     def verified(self) -> bool:

@@ -19,6 +19,7 @@ from sfd_hbm_ros.hbm import HarmonicBalance, Solution
 from sfd_hbm_ros.hbm.time_limit import ELAPSED, TimeLimitError, time_limit
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.place import Place
+from sfd_hbm_ros.response.errors import unexpected
 from sfd_hbm_ros.response.tracking.excursion import Excursion
 from sfd_hbm_ros.response.tracking.guide import Guide
 from sfd_hbm_ros.response.tracking.operating_point import OperatingPoint, begun, placed
@@ -162,6 +163,7 @@ class Tracker:
             reason = f"speed: {speed} rad/s is not allowed, it must be positive and finite"
             return Tracked(no_solution(self._guide.balance, speed, reason))
         before, busy = self._excursion.returned(speed, time, self._known), False
+        bug = None
         try:
             with np.errstate(all="ignore"):  # where numbers overflow there is no solution
                 if before is not None:
@@ -183,10 +185,12 @@ class Tracker:
             if busy:
                 elapsed = ELAPSED * self._patience
                 reason = f"no solution was found within {elapsed:g} s, as the computer is busy"
-        except Exception as error:  # a speed or a machine beyond what numbers can hold
+        except (ArithmeticError, np.linalg.LinAlgError) as error:  # beyond what numbers can hold
             reason = f"{type(error).__name__}: {error}"
+        except Exception as error:
+            reason, bug = unexpected(error), error
         self._break_off(busy)
-        return Tracked(no_solution(self._guide.balance, speed, reason))
+        return Tracked(no_solution(self._guide.balance, speed, reason), bug=bug)
 
     def _advanced(self, speed: float) -> OperatingPoint:
         last = self._known.last
