@@ -1,7 +1,9 @@
 """Fixtures of the tests that talk over DDS; without ROS those tests are skipped, by name."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
 
 import pytest
 
@@ -52,3 +54,20 @@ def start_node(domain):
 def start(start_node):
     """Start predictors with ROS arguments."""
     return lambda *arguments: start_node("predictor", "--ros-args", *arguments)
+
+
+@contextmanager
+def predictor_here(given: Mapping[str, Any]) -> Iterator[Any]:
+    """A predictor within this process, without anything between, with parameters."""
+    import rclpy
+    from rclpy.signals import SignalHandlerOptions
+
+    from sfd_hbm_ros.node.predictor import Predictor
+
+    parameters = (part for key, value in given.items() for part in ("-p", f"{key}:={value}"))
+    rclpy.init(args=["--ros-args", *parameters], signal_handler_options=SignalHandlerOptions.NO)
+    node = Predictor()
+    yield node
+    node.close()
+    node.destroy_node()
+    rclpy.shutdown()

@@ -12,13 +12,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from .graph import JointState, WrenchStamped, rclpy  # first, as it skips the file without ROS
+from .graph import JointState, WrenchStamped  # first, as it skips the file without ROS
 
 # isort: split
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Vector3, Wrench
 from rclpy.parameter import Parameter
-from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import Temperature
 from std_msgs.msg import Header
 
@@ -27,6 +26,7 @@ from sfd_hbm_ros.machine import read_machine
 from sfd_hbm_ros.node.predictor import Predictor
 from sfd_hbm_ros.node.unbalance import agreed
 
+from .conftest import predictor_here
 from .process import PAPER_ROTOR
 
 Messages = st.SearchStrategy[Any]
@@ -103,13 +103,8 @@ def predictor(domain) -> Iterator[Predictor]:
         "stale_after": 3600.0,
         "oil.grade": 32,
     }
-    parameters = (part for key, value in given.items() for part in ("-p", f"{key}:={value}"))
-    rclpy.init(args=["--ros-args", *parameters], signal_handler_options=SignalHandlerOptions.NO)
-    node = Predictor()
-    yield node
-    node.close()
-    node.destroy_node()
-    rclpy.shutdown()
+    with predictor_here(given) as node:
+        yield node
 
 
 @pytest.fixture

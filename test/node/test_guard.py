@@ -2,22 +2,21 @@
 
 import pytest
 
-from .graph import JointState, rclpy  # first, as it skips the file without ROS
+from .graph import JointState  # first, as it skips the file without ROS
 
 # isort: split
 from diagnostic_msgs.srv import SelfTest
 from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.msg import Parameter
 from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically
-from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import SetBool, Trigger
 
 from sfd_hbm_ros.kernels import load_kernels
 from sfd_hbm_ros.node.guard import refused
-from sfd_hbm_ros.node.predictor import Predictor
 from sfd_hbm_ros.response.tracking.tracker import Tracker
 from sfd_hbm_ros.response.warning.settings import Level
 
+from .conftest import predictor_here
 from .process import PAPER_ROTOR
 
 
@@ -25,13 +24,8 @@ from .process import PAPER_ROTOR
 def predictor(domain):
     load_kernels()
     given = {"machine_file": PAPER_ROTOR, "harmonics": 1, "publish_rate": 1000.0}
-    parameters = (part for key, value in given.items() for part in ("-p", f"{key}:={value}"))
-    rclpy.init(args=["--ros-args", *parameters], signal_handler_options=SignalHandlerOptions.NO)
-    node = Predictor()
-    yield node
-    node.close()
-    node.destroy_node()
-    rclpy.shutdown()
+    with predictor_here(given) as node:
+        yield node
 
 
 def statuses(predictor):
