@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
+from sfd_hbm_ros.hbm.quasi_periodic_response import standing_response
 from sfd_hbm_ros.machine import (
     Bearing,
     Damper,
@@ -18,7 +19,7 @@ from sfd_hbm_ros.machine import (
 )
 from sfd_hbm_ros.response.curves.curve import parameter_curve, response_curve
 from sfd_hbm_ros.response.curves.summary import Summary
-from sfd_hbm_ros.response.responses import disk_vibrations, vibration
+from sfd_hbm_ros.response.responses import disk_vibrations, vibration, with_unknowns
 from sfd_hbm_ros.rotor import critical_speeds, hold_journals
 from sfd_hbm_ros.rotor.directions import Direction
 
@@ -154,6 +155,25 @@ def test_peaks_of_disks_are_those_of_the_whole_rotor():
         ]
         assert near[0] < near[1] > near[2]
         assert peak.vibration == pytest.approx(near[1], rel=1e-7)
+
+
+def test_disks_of_a_quasi_periodic_response_move_as_in_time():
+    """One that stands is the circle; else the whirls of all frequencies are what is summed up."""
+    balance = HarmonicBalance(PAPER, Harmonics(1))
+    circle = solve(balance, 3800.0 * RPM)
+    standing = standing_response(circle, Harmonics(3), 150.0)
+    assert disk_vibrations(balance, standing) == pytest.approx(disk_vibrations(balance, circle))
+    rows = standing.coefficients.copy()
+    rows[1:5] += 1e-5 * np.array([[1.0, 0.2], [0.3, -0.5], [0.1, 0.4], [-0.2, 0.6]])
+    moving = with_unknowns(standing, None, np.append(rows, standing.frequency))
+    orders = 1.0 + np.arange(-3, 4) * moving.frequency_ratio
+    journals = np.outer(moving.whirl("damper_1"), [1.0, -1.0j])
+    amplitudes = balance.condensation.at(moving.speed, orders).recover(journals)
+    time = np.linspace(0.0, 2.0 * np.pi / moving.frequency, 4001)
+    waves = np.exp(1j * moving.speed * np.multiply.outer(time, orders))
+    for name, found in disk_vibrations(balance, moving).items():
+        x, y = (waves @ amplitudes[:, balance.model.stations[name]]).real.T
+        assert found == pytest.approx(np.hypot(x, y).max(), rel=1e-4)
 
 
 def test_nothing_is_amplified_by_an_entry_of_the_machine_file():
