@@ -158,7 +158,7 @@ def _about_level(alarm: JumpAlarm, now: float, rounding: Rounding) -> str:
     if not rest:
         return ""
     soon = rounding.within_time("held for", rest)
-    return f"; all are behind their limits, {alarm.level(now).name} ends in {soon}"
+    return f"; no limit is passed any more, {alarm.level(now).name} ends in {soon}"
 
 
 def _held(cause: Cause) -> str:

@@ -149,7 +149,7 @@ def test_an_alarm_of_one_quantity_is_not_held_by_the_deadband_of_another():
         alarm.update(steady, 0.877, now)
         if alarm.level(now) is not Level.OK:
             assert now < 12.6
-            assert "; all are behind their limits, ERROR ends in less than " in advice(
+            assert "; no limit is passed any more, ERROR ends in less than " in advice(
                 alarm, steady, 0.877, now
             )
     assert alarm.state(3610.0) is AlarmState.RETURNED
