@@ -124,7 +124,7 @@ def test_load_that_nothing_can_carry_is_told_and_taken_back(predictor):
     predictor.push("disk_3", (0.0, -1e5), stamp)
     eccentricity, harmonics = predictor.answer(stamp)
     assert all(math.isnan(value) for value in (*eccentricity.values(), *harmonics.values()))
-    predictor.until_status("Solver", ERROR, "no solution was found within 0.4 s of processor time")
+    predictor.until_status("Solver", ERROR, "no solution was found within ")
     stamp = predictor.now()
     predictor.push("disk_3", (0.0, 0.0), stamp)
     check(predictor.answer(stamp), solved(350.0))
