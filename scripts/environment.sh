@@ -88,18 +88,19 @@ use_package() {
 }
 
 # Numba keeps what it has compiled beside the package; better now, once, than in every process.
+# Those of hbm are the last.
 compile_kernels() {
     local folder
     folder=$(python3 -P -c 'import sfd_hbm_ros; print(sfd_hbm_ros.__path__[0])')
-    compgen -G "$folder/film/__pycache__/*.nbi" >/dev/null ||
+    compgen -G "$folder/hbm/__pycache__/*.nbi" >/dev/null ||
         echo "Compiling the numerical kernels (once, about 10 s) ..."
-    python3 -P -c 'import sfd_hbm_ros.hbm'
+    python3 -P -W ignore -c 'import sfd_hbm_ros.hbm, sfd_hbm_ros.kernels as k; k.load_kernels()'
 }
 
 if [ "${ROS_DISTRO:-}" = jazzy ] && python3 -c 'import rclpy' 2>/dev/null; then
-    python3 -c 'import colcon_core, numba, numpy, scipy, yaml' 2>/dev/null ||
-        die "the sourced ROS 2 Jazzy lacks colcon, numba, numpy, scipy or yaml: apt install" \
-            "python3-colcon-common-extensions python3-numba python3-numpy python3-scipy python3-yaml."
+    python3 -c 'import colcon_core, numpy, scipy, yaml' 2>/dev/null ||
+        die "the sourced ROS 2 Jazzy lacks colcon, numpy, scipy or yaml: apt install" \
+            "python3-colcon-common-extensions python3-numpy python3-scipy python3-yaml."
 else
     use_venv
 fi

@@ -54,6 +54,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with at_work(chosen.verb), warnings.catch_warnings(), one_blas_thread:
             # where numbers overflow, the outcome tells
             warnings.simplefilter("ignore", RuntimeWarning)
+            warnings.showwarning = lambda message, *_: print(
+                f"sfd_hbm: {message}", file=sys.stderr
+            )
             chosen.run(chosen)
     except BrokenPipeError:  # the reader of a pipe has seen enough
         sys.stderr.close()

@@ -2,6 +2,7 @@
 
 import signal
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TypeVar
@@ -9,6 +10,7 @@ from typing import TypeVar
 import rclpy
 from rclpy.exceptions import ParameterException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.logging import get_logger
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions, get_current_signal_handlers_options
 from rclpy.task import Future
@@ -42,7 +44,8 @@ def run(name: str, make: Callable[[], N], work: Callable[[N], int]) -> int:
         for wrong arguments or parameters.
     """
     try:
-        with one_blas_thread, _interrupts_left_to_rclpy():
+        with one_blas_thread, _interrupts_left_to_rclpy(), warnings.catch_warnings():
+            warnings.showwarning = lambda message, *_: get_logger(name).warning(str(message))
             try:
                 node = _made(name, make)
                 return BAD_INPUT if node is None else work(node)

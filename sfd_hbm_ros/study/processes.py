@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 from typing import Any
 
+from sfd_hbm_ros.kernels import warn_if_uncompiled
 from sfd_hbm_ros.study.task import Outcome, Task
 from sfd_hbm_ros.threads import one_blas_thread
 
@@ -34,6 +35,7 @@ def on_processes(
     processes : int, optional
         Number of processes; as many as there are cores where it is left out.
     """
+    warn_if_uncompiled()
     left, count = dict(variants), processes or os.cpu_count() or 1
     alive = True
     while left and alive:

@@ -140,8 +140,13 @@ class Simulator(Node):
 
 def main() -> int:
     """Run the simulator until the end of its last coast-down."""
-    load_kernels()  # now, as the run cannot wait for it
-    return run("simulator", Simulator, _simulate)
+    return run("simulator", _ready, _simulate)
+
+
+def _ready() -> Simulator:
+    """Return the node with its kernels loaded, as its run cannot wait for them."""
+    load_kernels()
+    return Simulator()
 
 
 def _simulate(simulator: Simulator) -> int:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics
 from sfd_hbm_ros.hbm.options import ContinuationOptions
+from sfd_hbm_ros.kernels import warn_if_uncompiled
 from sfd_hbm_ros.report.paper.cases import Case, Cases
 from sfd_hbm_ros.response.curves.curve import ResponseCurve, response_curve
 from sfd_hbm_ros.response.curves.detached import detached_branches
@@ -24,6 +25,7 @@ def compute(cases: Cases, names: Iterable[str]) -> Iterator[tuple[str, ResponseC
     NoSolutionError
         If no solution was found at an end of a curve's range.
     """
+    warn_if_uncompiled()
     # not forked: other threads may hold locks
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(os.cpu_count(), context) as pool:
