@@ -281,15 +281,21 @@ def _measure_hint(measured: Mapping[str, float], candidates: Sequence[Solution])
     return ""
 
 
+@lru_cache(maxsize=256)
+def _order(text: str) -> Fraction:
+    """The order that a name holds, with a period that is not too long."""
+    return Fraction(text).limit_denominator(_DENOMINATOR)
+
+
 def _terms(measured: Mapping[str, float], damper: str, axis: str) -> Terms:
     """The greatest of the terms of an axis, as many as `_MOST_TERMS`."""
     stem = f"{damper}/{axis}/"
     terms: Terms = {}
     for name, value in measured.items():
         if name.startswith(stem) and not name.endswith("/phase"):
-            order = Fraction(name.removeprefix(stem).partition("x")[0])
+            order = _order(name.removeprefix(stem).partition("x")[0])
             lag = measured.get(name.replace("/amplitude", "/phase"), math.nan) if order else 0.0
-            terms[order.limit_denominator(_DENOMINATOR)] = value, lag
+            terms[order] = value, lag
     return dict(sorted(terms.items(), key=lambda term: -abs(term[1][0]))[:_MOST_TERMS])
 
 
@@ -301,12 +307,12 @@ def _farthest(orbit: Mapping[str, Terms]) -> float:
     angle = np.linspace(0.0, 2.0 * np.pi * revolutions, min(points, _MOST_POINTS), endpoint=False)
     squares = np.zeros_like(angle)
     for axis, behind in (("x", 0.0), ("y", 0.5 * np.pi)):
-        position = np.zeros_like(angle)
+        terms = []
         for order, (amplitude, lag) in orbit[axis].items():
             _, lag_x = orbit["x"].get(order, (0.0, math.nan))
             assumed = (lag_x if math.isfinite(lag_x) else 0.0) + (behind if order else 0.0)
-            position += amplitude * np.cos(
-                float(order) * angle - (lag if math.isfinite(lag) else assumed)
-            )
-        squares += position**2
+            terms.append((float(order), amplitude, lag if math.isfinite(lag) else assumed))
+        if terms:
+            orders, amplitudes, lags = np.array(terms).T
+            squares += (amplitudes @ np.cos(np.outer(orders, angle) - lags[:, None])) ** 2
     return math.sqrt(float(squares.max()))

@@ -26,7 +26,7 @@ GONE = 60.0
 """Time without an orbit [s] after which the machine counts as not measured any more."""
 
 _BACK = 0.8  # part of the threshold below which model and machine agree again
-_MOST = 1000  # orbits kept
+_MOST = 100  # orbits kept
 
 
 class _Orbit(NamedTuple):
@@ -78,6 +78,7 @@ class Measurements:
     def forget_model(self) -> None:
         """Compare anew, as the model's response turns out to be another one."""
         self._orbits: deque[_Orbit] = deque(maxlen=_MOST)
+        self._typical = math.nan
         self._differs = False
 
     def see(self, eccentricities: Mapping[str, float], now: float) -> None:
@@ -92,6 +93,8 @@ class Measurements:
         self._orbits.append(_Orbit(now, agreement.disagreement if counts else 0.0))
         while len(self._orbits) > FEWEST and now - self._orbits[0].time > WINDOW:
             self._orbits.popleft()
+        if len(self._orbits) >= FEWEST:  # here, as orbits come less often than is asked for it
+            self._typical = median(orbit.disagreement for orbit in self._orbits)
 
     def eccentricities(self, now: float, age: float) -> Mapping[str, float]:
         """The newest eccentricities by their dampers; none where older than an age [s]."""
@@ -116,6 +119,5 @@ class Measurements:
         return median(max(one.values()) for one in self._eccentricities)
 
     def _disagreement(self, now: float, age: float) -> float:
-        if len(self._orbits) < FEWEST or now - self._orbits[-1].time > age:
-            return math.nan
-        return median(orbit.disagreement for orbit in self._orbits)
+        fresh = self._orbits and now - self._orbits[-1].time <= age
+        return self._typical if fresh else math.nan
