@@ -16,6 +16,12 @@ from sfd_hbm_ros.machine.shipped import shipped
 from sfd_hbm_ros.node.diagnostics import Status
 from sfd_hbm_ros.node.messages.common import status_message
 from sfd_hbm_ros.node.slices import PERIOD, advance
+from sfd_hbm_ros.report.paper.cases import (
+    cases_file,
+    published_jumps,
+    published_peak,
+    read_cases,
+)
 from sfd_hbm_ros.response.self_test import Finding, self_test
 from sfd_hbm_ros.response.warning.settings import Level
 
@@ -70,7 +76,9 @@ class SelfTestService:
 
 def _checked(findings: list[Finding]) -> Iterator[None]:
     """Do the checks, and pause now and then."""
-    for finding in self_test(read_machine(shipped(_ROTOR))):
+    cases = read_cases(cases_file())
+    published = published_peak(cases), published_jumps(cases)
+    for finding in self_test(read_machine(shipped(_ROTOR)), *published):
         if finding is not None:
             findings.append(finding)
         yield

@@ -18,9 +18,62 @@ from sfd_hbm_ros.units import RPM
 
 _EXACT = 1e-9  # relative, to which closed forms hold where nothing is iterated
 _SOLVED = 1e-8  # of the clearance, to which closed forms hold for solutions
-_SPEED, _WIDTH = 0.01, 0.10  # relative, as the paper's claims are judged: config/paper_cases.yaml
 _PAPER = "of the paper's"
 _COARSE = ContinuationOptions(longest_step=0.12, eccentricity=0.98)
+
+
+@dataclass(frozen=True)
+class PublishedPeak:
+    """A critical speed that somebody has published.
+
+    Attributes
+    ----------
+    machine : Machine
+        The machine.
+    speeds_rpm : (float, float)
+        Range in which it is looked for [rpm].
+    rpm : float
+        The speed of the peak [rpm].
+    within : float
+        Part of it within which another agrees.
+    source : str
+        Where it stands.
+    """
+
+    machine: Machine
+    speeds_rpm: tuple[float, float]
+    rpm: float
+    within: float
+    source: str
+
+
+@dataclass(frozen=True)
+class PublishedJumps:
+    """A hysteresis that somebody has published.
+
+    Attributes
+    ----------
+    machine : Machine
+        The machine.
+    speeds_rpm : (float, float)
+        Range in which the jumps of start-up and coast-down are looked for [rpm].
+    between_rpm : (float, float)
+        Speeds between which both lie [rpm].
+    width_rpm : float
+        How far they are apart [rpm].
+    speed_within, width_within : float
+        Parts of these within which others agree.
+    source : str
+        Where it stands.
+    """
+
+    machine: Machine
+    speeds_rpm: tuple[float, float]
+    between_rpm: tuple[float, float]
+    width_rpm: float
+    speed_within: float
+    width_within: float
+    source: str
 
 
 @dataclass(frozen=True)
@@ -53,13 +106,17 @@ class Finding:
         return self.deviation <= self.limit
 
 
-def self_test(machine: Machine) -> Iterator[Finding | None]:
+def self_test(
+    machine: Machine, peak: PublishedPeak, jumps: PublishedJumps
+) -> Iterator[Finding | None]:
     """Check the solver on the paper's rotor.
 
     Parameters
     ----------
     machine : Machine
-        The rotor of the reference paper as its machine file has it.
+        The rotor of the reference paper as its machine file has it, with one damper.
+    peak, jumps : PublishedPeak, PublishedJumps
+        What the paper has computed of variants of it.
 
     Yields
     ------
@@ -71,8 +128,8 @@ def self_test(machine: Machine) -> Iterator[Finding | None]:
     )
     yield _film(pi_film.dampers[0])
     yield _circular_orbit(pi_film)
-    yield from _stiff_spring(machine)
-    yield from _jumps(machine)
+    yield from _peak(peak)
+    yield from _jumps(jumps)
 
 
 def _film(damper: Damper) -> Finding:
@@ -120,26 +177,45 @@ def _circular_orbit(machine: Machine) -> Finding:
     return Finding("circular response of the rotor", source, worst, _SOLVED, "of the clearance")
 
 
-def _stiff_spring(machine: Machine) -> Iterator[Finding | None]:
-    """The peak with a spring of 10 000 lbf/in."""
-    stiff = override_all(machine, {"dampers.damper_1.centering_stiffness": 1.7513e6})
-    peak, highest = math.nan, 0.0
-    for rpm, eccentricity in _branch(stiff, 3740.0, 3900.0):
+def _peak(published: PublishedPeak) -> Iterator[Finding | None]:
+    """The speed at which the response of a variant is greatest."""
+    points: list[tuple[float, float]] = []
+    for point in _branch(published.machine, *published.speeds_rpm):
         yield None
-        if eccentricity > highest:
-            peak, highest = rpm, eccentricity
-    deviation = abs(peak / 3790.0 - 1.0)
-    yield Finding("speed of a peak", "the paper's Fig. 13: 3790 rpm", deviation, _SPEED, _PAPER)
+        points.append(point)
+    deviation = abs(_top(points) / published.rpm - 1.0)
+    source = f"{published.source}: {published.rpm:g} rpm"
+    yield Finding("speed of a peak", source, deviation, published.within, _PAPER)
 
 
-def _jumps(machine: Machine) -> Iterator[Finding | None]:
-    """The speeds at which the rotor jumps during start-up and coast-down."""
-    heavy = override_all(machine, {"unbalance.disk_2.magnitude": 5.039e-4})
-    start_up = yield from _jump(heavy, 3850.0, 4200.0)
-    coast_down = yield from _jump(heavy, 4050.0, 3900.0)
-    deviation = abs((start_up - coast_down) / 180.0 - 1.0)
-    source = "the paper's Fig. 6: they differ by 180 rpm"
-    yield Finding("speeds of jumps", source, deviation, _WIDTH, _PAPER)
+def _top(points: list[tuple[float, float]]) -> float:
+    """Abscissa of the parabola through the highest of some points and its neighbours.
+
+    NaN where none of them lies between others.
+    """
+    heights = [height for _, height in points]
+    top = int(np.argmax(heights)) if points else 0
+    if not 0 < top < len(points) - 1:
+        return math.nan
+    x, y = zip(*points[top - 1 : top + 2], strict=True)
+    curvature, slope, _ = np.polyfit(np.array(x) - x[1], y, 2)
+    return float(x[1] - 0.5 * slope / curvature)
+
+
+def _jumps(published: PublishedJumps) -> Iterator[Finding | None]:
+    """The speeds at which a variant jumps during start-up and coast-down."""
+    low, high = published.speeds_rpm
+    start_up = yield from _jump(published.machine, low, high)
+    coast_down = yield from _jump(published.machine, high, low)
+    least, most = published.between_rpm
+    outside = max(0.0, least / coast_down - 1.0, start_up / most - 1.0)
+    if math.isnan(start_up + coast_down):
+        outside = math.nan
+    source = f"{published.source}: between {least:g} and {most:g} rpm"
+    yield Finding("speeds of jumps", source, outside, published.speed_within, _PAPER)
+    deviation = abs((start_up - coast_down) / published.width_rpm - 1.0)
+    source = f"{published.source}: {published.width_rpm:g} rpm apart"
+    yield Finding("width of a hysteresis", source, deviation, published.width_within, _PAPER)
 
 
 def _jump(machine: Machine, start: float, end: float) -> Generator[None, None, float]:

@@ -12,7 +12,7 @@ from diagnostic_msgs.srv import SelfTest
 from .process import PAPER_ROTOR
 
 OK = b"\x00"
-CHECKS = 4
+CHECKS = 5
 
 
 @pytest.fixture(scope="module")

@@ -1,5 +1,6 @@
 """The paper's cases as data, the claims that hold, and where a 3x can come from."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -74,6 +75,26 @@ def test_a_run_up_meets_less_hysteresis_on_disks_1_and_3(verdicts):
 
 def test_the_circle_at_3990_rpm_has_no_3x(verdicts):
     assert verdicts["P3"]["third"] is Verdict.DIFFERS
+
+
+def test_reasons_are_those_that_the_numbers_support(cases, study):
+    """Where the same judge has other curves or speeds, its reason is another or none."""
+    claim = cases.claims["P12"]
+    why = JUDGES["P12"](study, claim)["below"].why
+    slower, faster = map(float, re.search(r"turns between (\d+) and (\d+) rpm", why).groups())
+    for rpm, first in ((slower, True), (faster, False)):
+        row = study.amplitudes(claim.curves, rpm)
+        assert (row[0] == max(row)) is first
+    before = replace(claim, numbers={**claim.numbers, "below_rpm": [slower]})
+    assert JUDGES["P12"](study, before)["below"].why == ""
+    claim = cases.claims["P8"]
+    assert "plateau rather than a resonance" in JUDGES["P8"](study, claim)["speed"].why
+    stiff = JUDGES["P8"](study, replace(claim, curves=claim.curves[-2:]))["speed"]
+    assert (stiff.verdict, stiff.why) == (Verdict.HOLDS, "")
+    claim = cases.claims["P5"]
+    assert "what the peak adds" in JUDGES["P5"](study, claim)["amplitude"].why
+    backwards = replace(claim, curves=claim.curves[::-1])
+    assert JUDGES["P5"](study, backwards)["amplitude"].why == ""
 
 
 def test_a_disturbance_makes_a_3x_that_dies_out(study):

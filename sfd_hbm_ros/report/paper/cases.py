@@ -8,6 +8,7 @@ from typing import Any, Literal, cast
 from sfd_hbm_ros.machine import Machine, MachineError, override_all, read_machine
 from sfd_hbm_ros.machine.document import read_document
 from sfd_hbm_ros.machine.shipped import shipped
+from sfd_hbm_ros.response.self_test import PublishedJumps, PublishedPeak
 
 Range = tuple[float, float]
 Kind = Literal["response", "orbit", "spectrum"]
@@ -124,6 +125,33 @@ def read_cases(path: Path) -> Cases:
     }
     return Cases(
         curves, figures, claims, _numbers(data["agreement"]), _range(data["criticals_rpm"])
+    )
+
+
+def published_peak(cases: Cases) -> PublishedPeak:
+    """The critical speed on the hardest spring, for the solver's self-test."""
+    claim = cases.claims["P8"]
+    return PublishedPeak(
+        cases.curves[claim.curves[-1]].machine,
+        cases.criticals_rpm,
+        claim.numbers["rpm"],
+        cases.agreement["speed"],
+        f"the paper's {claim.place}",
+    )
+
+
+def published_jumps(cases: Cases) -> PublishedJumps:
+    """The hysteresis with the larger unbalance on disk 2, for the solver's self-test."""
+    claim = cases.claims["P2"]
+    numbers, agreement = claim.numbers, cases.agreement
+    return PublishedJumps(
+        cases.curves[claim.curves[1]].machine,
+        cases.criticals_rpm,
+        (numbers["lowest_rpm"], numbers["highest_rpm"]),
+        numbers["disk_2_rpm"],
+        agreement["speed"],
+        agreement["width"],
+        f"the paper's {claim.place}",
     )
 
 

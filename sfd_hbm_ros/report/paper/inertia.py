@@ -1,5 +1,7 @@
 """Claims P12 to P15, on the disks' polar inertia, and P16, on the size of the model."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from sfd_hbm_ros.report.paper.cases import Claim
@@ -16,12 +18,23 @@ def p12(study: Study, claim: Claim) -> dict[str, Judgement]:
         "below": judged(
             all(row[0] == max(row) for row in below),
             _at(claim, "below_rpm", below),
-            "the order turns already some way below the critical speed",
+            _turning(claim.numbers["below_rpm"], [row[0] == max(row) for row in below], speeds),
         ),
         "above": judged(all(row[0] == min(row) for row in above), _at(claim, "above_rpm", above)),
         "speed": judged(rising(speeds), listed(speeds, ".0f", "rpm")),
         "peak": judged(rising(heights), f"eccentricities {listed(heights, '.4f')}"),
     }
+
+
+def _turning(rpm: list[float], first: list[bool], criticals: list[float]) -> str:
+    """Where the smallest inertia ceases to respond most, if that is below every critical speed."""
+    for (slower, before), (faster, after) in pairwise(zip(rpm, first, strict=True)):
+        if before and not after and faster < min(criticals):
+            return (
+                f"the order turns between {slower:.0f} and {faster:.0f} rpm, below the lowest "
+                f"critical speed of {min(criticals):.0f} rpm"
+            )
+    return ""
 
 
 def p13(study: Study, claim: Claim) -> dict[str, Judgement]:

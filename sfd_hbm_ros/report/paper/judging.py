@@ -41,7 +41,11 @@ Judge = Callable[[Study, Claim], dict[str, Judgement]]
 
 
 def judged(holds: bool, ours: str, why: str = "") -> Judgement:
-    """A judgement that the numbers decide."""
+    """A judgement that the numbers decide.
+
+    What is claimed to be the reason of a difference is for the numbers to support, too: `why` is
+    empty where they do not.
+    """
     return Judgement(ours, Verdict.HOLDS if holds else Verdict.DIFFERS, why)
 
 

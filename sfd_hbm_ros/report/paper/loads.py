@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sfd_hbm_ros.hbm import JournalMotion
+from sfd_hbm_ros.hbm import JournalMotion, Solution
 from sfd_hbm_ros.report.paper.cases import Claim
 from sfd_hbm_ros.report.paper.judging import (
     Judgement,
@@ -19,8 +19,6 @@ from sfd_hbm_ros.report.paper.unbalance import width_of_hysteresis
 from sfd_hbm_ros.units import RPM
 
 Array = NDArray[np.float64]
-
-_BESIDE = 3000.0  # speed beside the first critical one [rpm]
 
 
 def p4(study: Study, claim: Claim) -> dict[str, Judgement]:
@@ -58,7 +56,9 @@ def p5(study: Study, claim: Claim) -> dict[str, Judgement]:
     speeds = [peak.rpm if peak else np.nan for peak in absolute]
     heights = [peak.amplitude if peak else np.nan for peak in about_mean]
     eccentricities = [peak.amplitude if peak else np.nan for peak in absolute]
-    beside = study.amplitudes(claim.curves, _BESIDE)
+    beside_rpm = claim.numbers["beside_rpm"]
+    beside = study.amplitudes(claim.curves, beside_rpm)
+    static = [_offset(study.start_up(name, beside_rpm)) for name in claim.curves]
     rises = [height - level for height, level in zip(eccentricities, beside, strict=True)]
     rpm, heaviest = claim.numbers["rpm"], claim.curves[-1]
     slow = study.amplitudes(claim.curves, rpm)
@@ -69,8 +69,10 @@ def p5(study: Study, claim: Claim) -> dict[str, Judgement]:
         "amplitude": judged(
             falling(heights),
             f"vibration about the mean {listed(heights)}, eccentricity {listed(eccentricities)}",
-            "as the static part approaches the clearance only what the peak adds to the response "
-            f"beside it falls: {listed(rises)} over that at {_BESIDE:.0f} rpm",
+            f"as the static part grows, {listed(static)} of the clearance at {beside_rpm:.0f} "
+            f"rpm, what the peak adds to the eccentricity there falls: {listed(rises)}"
+            if rising(static) and falling(rises) and not falling(heights)
+            else "",
         ),
         "slow": judged(
             slow[-1] == max(slow) and slow[-1] > max(faster),
@@ -79,6 +81,12 @@ def p5(study: Study, claim: Claim) -> dict[str, Judgement]:
             else f"{listed(slow)} at {rpm:.0f} rpm",
         ),
     }
+
+
+def _offset(solution: Solution) -> float:
+    """Distance of the orbit's mean from the centre, of the clearance."""
+    motion = journal(solution)
+    return float(np.hypot(*motion.cos[0])) / motion.clearance
 
 
 def p6(study: Study, claim: Claim) -> dict[str, Judgement]:

@@ -22,7 +22,7 @@ def p8(study: Study, claim: Claim) -> dict[str, Judgement]:
         "speed": judged(
             rising(speeds),
             listed(speeds, ".0f", "rpm"),
-            "the two softest springs have a plateau instead of a resonance",
+            _plateaus(study, claim, speeds),
         ),
         "peak": judged(rising(heights), f"eccentricities {listed(heights)}"),
         "factor": judged(factor < numbers["factor"], f"at most {factor:.2f}"),
@@ -37,6 +37,22 @@ def p8(study: Study, claim: Claim) -> dict[str, Judgement]:
             f"{speeds[-1]:.0f} rpm with {heights[-1]:.3f}",
         ),
     }
+
+
+def _plateaus(study: Study, claim: Claim, speeds: list[float]) -> str:
+    """Which springs break the order, and have a plateau that gives them no critical speed."""
+    factors = [_factor(study, name) for name in claim.curves]
+    disordered = [i for i in range(1, len(speeds)) if speeds[i] <= speeds[i - 1]]
+    flat = sorted(
+        {j for i in disordered for j in (i - 1, i) if factors[j] < claim.numbers["factor"]}
+    )
+    if not flat:
+        return ""
+    values = listed([factors[j] for j in flat], ".2f")
+    return (
+        f"at {listed([speeds[j] for j in flat], '.0f', 'rpm')} there is a plateau rather than a "
+        f"resonance, with an amplification factor of at most {values}"
+    )
 
 
 def p9(study: Study, claim: Claim) -> dict[str, Judgement]:
@@ -97,7 +113,7 @@ def _factor(study: Study, name: str) -> float:
 
     The width counts only as far as the curve goes, where it does not fall so low.
     """
-    [branch] = study.curve(name).branches
+    branch = study.curve(name).branches[0]
     speed, height = branch.speed / RPM, branch.worst_eccentricity
     top = int(np.argmax(height))
     low = height < height[top] / np.sqrt(2.0)

@@ -71,20 +71,27 @@ def p3(study: Study, claim: Claim) -> dict[str, Judgement]:
     leading = np.abs(stability(balance, solution).multipliers[0])
     first, last = (int(revolutions) for revolutions in numbers["revolutions"])
     early, late = third_harmonic(balance, solution, numbers["disturbance"], (first, last))
+    relative = amplitudes / amplitudes[1]
+    stable = bool(leading < 1.0)
     ours = (
-        f"3x is {amplitudes[3] / amplitudes[1]:.0e} of 1x at an eccentricity of "
-        f"{solution.eccentricity_max:.3f}; the circular orbit is stable, with a leading Floquet "
-        f"multiplier of {leading:.3f}; integrated in time from a disturbance of "
-        f"{numbers['disturbance']:g} of the clearance, 3x is {early:.0e} of 1x after {first} "
-        f"revolutions and {late:.0e} after {first + last}"
+        f"3x is {relative[3]:.0e} of 1x at an eccentricity of {solution.eccentricity_max:.3f}; "
+        f"the orbit is {'stable' if stable else 'unstable'}, with a leading Floquet multiplier of "
+        f"{leading:.3f}; integrated in time from a disturbance of {numbers['disturbance']:g} of "
+        f"the clearance, 3x is {early:.0e} of 1x after {first} revolutions and {late:.0e} after "
+        f"{first + last}"
     )
-    why = (
-        "a circle has no 3x, and no instability makes another orbit of it; an orbit slightly "
-        "elliptic, as before a transient or an iteration has settled, has -1x and 3x and no 2x; "
-        "so has a film integrated over 4 fixed angles: n angles give a circle the orders 1, "
-        "n - 1, n + 1, 2n - 1, ..."
-    )
-    shown = amplitudes[3] > study.agreement["visible"] * amplitudes[1]
+    visible = study.agreement["visible"]
+    reasons = []
+    if np.delete(relative, 1).max() < visible:
+        reasons.append("the orbit is a circle about the centre, which has 1x alone")
+        if stable:
+            reasons.append("no instability makes another orbit of it")
+    if late < early < visible:
+        reasons.append("what 3x a disturbance brings is not seen and dies out")
+    elif late < visible <= early:
+        reasons.append("3x is seen while a disturbance dies out, before the response has settled")
+    why = "; ".join(reasons)
+    shown = relative[3] > visible
     return {"third": judged(bool(shown), ours, why)}
 
 
