@@ -121,7 +121,11 @@ def beating(graph, start, tmp_path_factory) -> tuple[Remote, Beats, Path]:
     start(*given(folder, f"machine_folder:={folder}"), "-r", "__node:=beating")
     remote = Remote(graph, "/beating")
     remote.meet(UPPER_ONLY)
-    remote.until_warning(b"\x00", "Jump down", UPPER_ONLY)
+    graph.until(
+        lambda: remote.curves,
+        "a curve comes",
+        between=lambda: remote.send(UPPER_ONLY, remote.now()),
+    )
     return remote, Beats(graph, "/beating/heartbeat"), folder
 
 

@@ -37,7 +37,7 @@ class Remembering:
         self.process = start(*arguments, "-r", f"__node:={NAME}")
         self.remote = Remote(graph, f"/{NAME}")
         self.remote.meet(UPPER_ONLY)
-        self.remote.until_warning(OK, "Jump down", UPPER_ONLY)
+        self.remote.until_warning(OK, "down to", UPPER_ONLY)
         self.remote.predict(BOTH)
         self._upper = self.until_saved(lambda state: state.settled and state.speed == BOTH)
 
