@@ -110,6 +110,16 @@ class Curves:
         return time.monotonic() - self._outdated_since if outdated else 0.0
 
     @property
+    def outdated_for(self) -> float:
+        """The same, but 0 where no more than a wider range is asked for."""
+        result, present = self.result, self._present
+        if result is not None and present is not None:
+            known, asked = result.job, present
+            if (known.machine, known.harmonics) == (asked.machine, asked.harmonics):
+                return 0.0
+        return self.age
+
+    @property
     def revisions(self) -> dict[str, str]:
         """The revision of the machine, and that of the curve: 0 while there is none."""
         of_curve = self.result.job.revision if self.result else 0
@@ -137,8 +147,8 @@ class Curves:
         if self.result is not None:
             values["curve: computed in [s]"] = f"{self.result.seconds:.3g}"
         message = status.message
-        if self.age > 0.0:
-            message += f"; the response curve is outdated by {self.age:.1f} s"
+        if self.outdated_for > 0.0:
+            message += f"; the response curve is outdated by {self.outdated_for:.1f} s"
         return replace(status, message=message, values=values)
 
     @property

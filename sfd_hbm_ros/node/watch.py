@@ -133,7 +133,11 @@ class Watch:
     def status(self) -> Status:
         """Return the warning."""
         tracked = self._tracked()
-        outlook, branch, age = self._outlook(tracked), self._branch(tracked), self._curves.age
+        outlook, branch, age = (
+            self._outlook(tracked),
+            self._branch(tracked),
+            self._curves.outdated_for,
+        )
         given = _eccentricity(tracked), age, time.monotonic(), self._rounding, self._operation.seen
         status = jump_status(self.alarm, outlook, branch, *given)
         level = status.level
