@@ -25,7 +25,8 @@ import numpy as np
 from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, Solution, solve, stability
 from sfd_hbm_ros.machine import Machine, machine_from_dict, machine_to_dict
 from sfd_hbm_ros.response.curves.curve import ResponseCurve, response_curve
-from sfd_hbm_ros.response.curves.jumps import Direction, jumps, solutions_at
+from sfd_hbm_ros.response.curves.jumps import Direction, jumps
+from sfd_hbm_ros.response.curves.place import solutions_at
 from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.response.responses import distance
 from sfd_hbm_ros.units import RPM

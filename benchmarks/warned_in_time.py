@@ -10,8 +10,7 @@ import numpy as np
 from benchmarks.warned_run import Run
 from sfd_hbm_ros.hbm import Solution
 from sfd_hbm_ros.response.curves.journey import travel
-from sfd_hbm_ros.response.curves.jumps import response_on
-from sfd_hbm_ros.response.curves.place import Place
+from sfd_hbm_ros.response.curves.place import Place, response_on
 from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.response.integration.integrator import Integrator, State
 from sfd_hbm_ros.response.integration.observed import LEAST, SIDE, ObservedJump, observed_jumps

@@ -44,6 +44,10 @@ def data_of(summary: Summary, seconds: float) -> dict[str, Any]:
         "amplification_factor": summary.amplification_factor,
         "tiny_folds": [read.mark(mark) for mark in summary.tiny_folds],
         "tiny_jumps": [read.jump(jump) for jump in summary.tiny_jumps],
+        "gaps": [
+            {"from": read.at(gap.low), "to": read.at(gap.high), "reason": gap.reason}
+            for gap in curve.gaps
+        ],
         "ends": [branch.stop.value for branch in curve.branches],
         "quasi_periodic": [_reach(branch) for branch in curve.branches if not branch.periodic],
         "detached": [
@@ -198,6 +202,11 @@ def text_of(data: dict[str, Any], summary: Summary) -> str:
     lines += [f"  jump    {_jump_text(jump, data)}" for jump in data["tiny_jumps"]]
     ends = [*data["ends"], *(one["end"] for one in data["detached"])]
     expected = Stop.RANGE.value, Stop.CLOSED.value
+    lines += [
+        f"no response was found from {_place(gap['from']).strip()} to "
+        f"{_place(gap['to']).strip()}{': ' if gap['reason'] else ''}{gap['reason']}"
+        for gap in data["gaps"]
+    ]
     lines += [f"ended: {end}" for end in ends if end not in expected]
     return "\n".join(lines)
 

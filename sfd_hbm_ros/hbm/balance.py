@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.film import FilmModel, film_of
-from sfd_hbm_ros.hbm.clearance import greatest_eccentricity, largest_step
+from sfd_hbm_ros.hbm.clearance import NARROW, greatest_eccentricity, largest_step
 from sfd_hbm_ros.hbm.film_terms import FilmTerms, LatestTerms
 from sfd_hbm_ros.hbm.harmonics import Harmonics
 from sfd_hbm_ros.hbm.solution import Solution
@@ -166,12 +166,24 @@ class Equations:
         return (linear - self._films(x).slope_by_frequency()).ravel()
 
     def eccentricity(self, x: Array) -> float:
-        """Greatest eccentricity of any journal at the time samples."""
-        return greatest_eccentricity(self._positions(x), self.balance.clearances)
+        """Greatest eccentricity of any journal."""
+        coarse = greatest_eccentricity(self._positions(x), self.balance.clearances)
+        if not coarse > NARROW:
+            return coarse
+        return greatest_eccentricity(self._fine_positions(x), self.balance.clearances)
 
     def largest_step(self, x: Array, step: Array) -> float:
-        """Part of a step, at most 1, that keeps every time sample off the clearance."""
-        return largest_step(self._positions(x), self._positions(step), self.balance.clearances)
+        """Part of a step, at most 1, that keeps every journal off the clearance."""
+        clearances = self.balance.clearances
+        start, move = self._positions(x), self._positions(step)
+        part = largest_step(start, move, clearances)
+        if not greatest_eccentricity(start + part * move, clearances) > NARROW:
+            return part
+        return largest_step(self._fine_positions(x), self._fine_positions(step), clearances)
+
+    def _fine_positions(self, x: Array) -> Array:
+        positions: Array = self.balance.harmonics.fine_basis @ x.reshape(self.force.shape)
+        return positions
 
     def _positions(self, x: Array) -> Array:
         positions: Array = self.balance.harmonics.bases[0] @ x.reshape(self.force.shape)

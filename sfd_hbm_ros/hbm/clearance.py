@@ -1,16 +1,19 @@
-"""Journals within their clearances, at the time samples of their motion."""
+"""Journals within their clearances, at time samples of their motion and between these."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+NARROW = 0.98
+"""Eccentricity from which on it matters what a journal does between two time samples."""
+
 _NEAREST = 1.0 - 1e-9  # eccentricity beyond which no step goes
 _ROOM = 0.9  # part of the gap to the clearance that one step may close at any time sample
 
 
 def greatest_eccentricity(positions: Array, clearances: Array) -> float:
-    """Greatest eccentricity of any journal.
+    """Greatest eccentricity of any journal, between the samples too.
 
     Parameters
     ----------
@@ -20,7 +23,15 @@ def greatest_eccentricity(positions: Array, clearances: Array) -> float:
         Clearance of each coordinate [m].
     """
     squares = np.square(positions / clearances)
-    return float(np.sqrt((squares[:, ::2] + squares[:, 1::2]).max()))
+    distances = squares[:, ::2] + squares[:, 1::2]
+    journals = np.arange(distances.shape[1])
+    top = distances.argmax(axis=0)
+    farthest = distances[top, journals]
+    beside = [distances[(top + side) % len(distances), journals] for side in (-1, 1)]
+    # between samples the squared distance is taken for a parabola
+    bend = np.maximum(2.0 * farthest - beside[0] - beside[1], np.finfo(float).tiny)
+    farthest = farthest + (beside[1] - beside[0]) ** 2 / (8.0 * bend)
+    return float(np.sqrt(farthest.max()))
 
 
 def largest_step(positions: Array, moves: Array, clearances: Array) -> float:

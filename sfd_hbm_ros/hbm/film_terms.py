@@ -1,6 +1,7 @@
 """The films' terms in the harmonic balance equations, by alternating frequency and time."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,12 +33,16 @@ class FilmTerms:
         self, harmonics: Harmonics, films: Sequence[Film], frequency: float, x: Array
     ) -> None:
         self._harmonics, self._frequency = harmonics, frequency
-        position, velocity, acceleration = (
-            frequency**order * (basis @ x) for order, basis in enumerate(harmonics.bases)
-        )
         columns = (slice(2 * journal, 2 * journal + 2) for journal in range(len(films)))
+
+        def motion(group: Harmonics, pair: slice) -> Motion:
+            position, velocity, acceleration = (
+                frequency**order * (basis @ x[:, pair]) for order, basis in enumerate(group.bases)
+            )
+            return position, velocity, acceleration
+
         self._films: list[SampledFilm] = [
-            sampled(film, harmonics, (position[:, pair], velocity[:, pair], acceleration[:, pair]))
+            sampled(film, harmonics, motion(harmonics, pair), partial(motion, pair=pair))
             for film, pair in zip(films, columns, strict=True)
         ]
 

@@ -79,7 +79,7 @@ class ContinuationOptions:
     shortest_step: float = 1e-7
     turning: float = 0.3
     iterations: int = 6
-    eccentricity: float = 0.995
+    eccentricity: float = 0.9999
     points: int = 5_000
     arc: float = 200.0
     progress: float = 1e-4

@@ -6,7 +6,7 @@ which the new motion of frequency w leaves (Kuznetsov 2004, Elements of Applied 
 sec. 3.4).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,7 @@ from sfd_hbm_ros.rotor import is_axisymmetric
 Array = NDArray[np.float64]
 
 _MULTIPLES = Harmonics(15)  # of the new frequency; the film is stiff where a circle is unstable
+_RESOLVED = 0.995  # eccentricity up to which so many multiples tell where the journal is
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +92,8 @@ def quasi_periodic_branch(
     harmonics : Harmonics
         Multiples of the new frequency to balance, all up to the highest.
     options : ContinuationOptions, optional
-        Settings of the continuation.
+        Settings of the continuation. The branch ends at an eccentricity of 0.995 at most, up to
+        which the multiples resolve it.
 
     Returns
     -------
@@ -111,6 +113,8 @@ def quasi_periodic_branch(
     family, root = _departure(balance, circle, harmonics)
     absent = np.ones(root.x.size, dtype=bool)
     absent[: balance.clearances.size] = absent[-1] = False
+    options = options or ContinuationOptions()
+    options = replace(options, eccentricity=min(options.eccentricity, _RESOLVED))
     first = point_beside(family, root, bounds, options)
     return QuasiPeriodicBranch(family, first, absent, bounds, options) if first else None
 

@@ -162,7 +162,7 @@ class Task:
         cut_short = [
             branch.stop.value
             for branch in curve.branches
-            if branch.stop in (Stop.STEP, Stop.POINTS)
+            if branch.stop in (Stop.STEP, Stop.POINTS, Stop.ARC, Stop.PROGRESS)
         ]
         return Outcome(
             run_up=first.get(Direction.RUN_UP),

@@ -12,7 +12,7 @@ from benchmarks.warned import main, outcome, score, warnings
 from benchmarks.warned_in_time import CIRCLES, jump_in_time
 from benchmarks.warned_run import random_run
 from sfd_hbm_ros.response.curves.journey import travel
-from sfd_hbm_ros.response.curves.jumps import response_on
+from sfd_hbm_ros.response.curves.place import response_on
 from sfd_hbm_ros.response.integration.observed import observed_jumps
 from sfd_hbm_ros.response.integration.ramp import Ramp
 from sfd_hbm_ros.response.integration.transient import simulate

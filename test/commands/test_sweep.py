@@ -20,7 +20,7 @@ from sfd_hbm_ros.machine import (
     write_machine,
 )
 from sfd_hbm_ros.response.curves.curve import response_curve
-from sfd_hbm_ros.response.curves.jumps import solutions_at
+from sfd_hbm_ros.response.curves.place import solutions_at
 
 from ..hbm.machines import random_machine
 

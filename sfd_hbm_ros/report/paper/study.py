@@ -10,7 +10,7 @@ from sfd_hbm_ros.hbm import JournalMotion, Solution, solve
 from sfd_hbm_ros.report.paper.cases import Numbers, Range
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.judged import CurveBranch
-from sfd_hbm_ros.response.curves.jumps import solutions_at
+from sfd_hbm_ros.response.curves.place import solutions_at
 from sfd_hbm_ros.response.curves.summary import Summary
 from sfd_hbm_ros.units import RPM
 

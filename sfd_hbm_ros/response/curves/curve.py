@@ -11,11 +11,11 @@ from sfd_hbm_ros.hbm import HarmonicBalance, Harmonics, solve
 from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.family import MachineFamily, ParameterFamily, SpeedFamily
 from sfd_hbm_ros.hbm.options import ContinuationOptions
-from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.hbm.selected_branch import SelectedBranch
 from sfd_hbm_ros.hbm.selection import SelectedBalance
 from sfd_hbm_ros.response.curves.forks import Fork, leaving_branches
-from sfd_hbm_ros.response.curves.judged import CurveBranch, Progress, judged
+from sfd_hbm_ros.response.curves.judged import CurveBranch, Progress
+from sfd_hbm_ros.response.curves.parts import Gap, follow_parts, gaps
 from sfd_hbm_ros.response.errors import NoSolutionError
 from sfd_hbm_ros.threads import one_blas_thread
 from sfd_hbm_ros.units import RPM
@@ -35,12 +35,15 @@ class ResponseCurve:
         The equations as the parameter varies.
     branches : tuple of CurveBranch
         The branch that begins at the start of the range first. Where it does not lead to the
-        range's end, the branch that begins there follows, and then those that leave others.
+        range's end, the one that begins there follows, and those found between (see
+        `follow_parts`), and then those that leave others.
     forks : tuple of Fork
         Where branches leave others.
     detached : tuple of CurveBranch
         Detached branches, where they were looked for (see `detached_branches`). A journey through
         the range does not meet them.
+    gaps : tuple of Gap
+        Where in the range no response was found.
     """
 
     balance: HarmonicBalance
@@ -48,6 +51,7 @@ class ResponseCurve:
     branches: tuple[CurveBranch, ...]
     forks: tuple[Fork, ...] = ()
     detached: tuple[CurveBranch, ...] = ()
+    gaps: tuple[Gap, ...] = ()
 
     @property
     def every_branch(self) -> tuple[CurveBranch, ...]:
@@ -99,7 +103,7 @@ def response_curve(
     Raises
     ------
     NoSolutionError
-        If no solution was found at an end of the range.
+        If no solution was found in the range.
     """
     family = SpeedFamily(balance)
     branch_from = partial(_solved_branch, family, options)
@@ -165,13 +169,11 @@ def _curve(
     progress: Progress | None,
     branch_from: Callable[[float, float], Branch],
 ) -> ResponseCurve:
-    first = judged(branch_from(start, end), progress)
-    branches = [first]
-    if first.stop is not Stop.RANGE or first.values[-1] != end:
-        branches.append(judged(branch_from(end, start), progress))
+    parts = follow_parts(family, start, end, branch_from, options, progress)
     bounds = min(start, end), max(start, end)
-    switched, forks = leaving_branches(family, branches, bounds, options, progress)
-    return ResponseCurve(family.balance, family, (*branches, *switched), forks)
+    switched, forks = leaving_branches(family, parts, bounds, options, progress)
+    branches = *parts, *switched
+    return ResponseCurve(family.balance, family, branches, forks, gaps=gaps(branches, bounds))
 
 
 def _solved_branch(

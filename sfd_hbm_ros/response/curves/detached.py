@@ -15,17 +15,16 @@ from sfd_hbm_ros.hbm.continuation import Branch
 from sfd_hbm_ros.hbm.family import LoadFamily, SpeedFamily
 from sfd_hbm_ros.hbm.newton import newton
 from sfd_hbm_ros.hbm.options import ContinuationOptions
-from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.hbm.solve import solution_at
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
-from sfd_hbm_ros.response.curves.judged import CurveBranch, Progress, judged
-from sfd_hbm_ros.response.curves.jumps import solutions_at
-from sfd_hbm_ros.response.responses import SAME, distance
+from sfd_hbm_ros.response.curves.judged import CurveBranch, Progress
+from sfd_hbm_ros.response.curves.parts import both_ways, lies_on
 from sfd_hbm_ros.rotor import critical_speeds, hold_journals
 from sfd_hbm_ros.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 
+_OPTIONS = ContinuationOptions(eccentricity=0.995)  # nearer to the wall no shock throws a machine
 _LEAST, _MOST = 0.05, 20.0  # parts of the unbalance between which it is followed
 
 
@@ -52,7 +51,7 @@ def detached_branches(
         of the shaft with its journals held, where a damper closes on its clearance. A detached
         branch that spans none of these is not found.
     options : ContinuationOptions, optional
-        Settings of the continuation.
+        Settings of the continuation, by default up to an eccentricity of 0.995.
     progress : callable, optional
         Called with the speed of every point, on the way to other responses too.
 
@@ -61,13 +60,15 @@ def detached_branches(
     list of CurveBranch
         Closed branches (`Stop.CLOSED`) and open ones, each found once.
     """
+    options = options or _OPTIONS
+    family = SpeedFamily(curve.balance)
     found: list[CurveBranch] = []
     for speed in _speeds(curve.balance, lowest, highest, speeds):
         for x in responses_over_unbalance(curve.balance, speed, options, progress):
-            if _known((*curve.branches, *found), curve, speed, x):
-                continue
-            bounds = lowest, highest
-            found.append(_both_ways(curve.balance, x, speed, bounds, options, progress))
+            response = solution_at(curve.balance, speed, x)
+            if not lies_on((*curve.branches, *found), speed, response):
+                bounds = lowest, highest
+                found.append(both_ways(family, response, speed, bounds, options, progress))
     return found
 
 
@@ -107,42 +108,3 @@ def responses_over_unbalance(
             if result.outcome.converged:
                 yield result.x
         before = point
-
-
-def _known(
-    branches: tuple[CurveBranch, ...], curve: ResponseCurve, speed: float, x: Array
-) -> bool:
-    """Whether a response lies on one of the branches."""
-    own = solution_at(curve.balance, speed, x)
-    return any(
-        distance(solution, own) < SAME
-        for branch in branches
-        for _, solution in solutions_at(branch, speed)
-    )
-
-
-def _both_ways(
-    balance: HarmonicBalance,
-    x: Array,
-    speed: float,
-    bounds: tuple[float, float],
-    options: ContinuationOptions | None,
-    progress: Progress | None,
-) -> CurveBranch:
-    """The branch through a response, closed or followed to both ends of it in the range."""
-    family = SpeedFamily(balance)
-    if speed in bounds:
-        other = bounds[1] if speed == bounds[0] else bounds[0]
-        return judged(Branch(family, x, speed, other, bounds, options), progress)
-    ahead = judged(Branch(family, x, speed, bounds[1], bounds, options), progress)
-    if ahead.stop is Stop.CLOSED:
-        return ahead
-    behind = judged(Branch(family, x, speed, bounds[0], bounds, options), progress)
-    return CurveBranch(
-        family,
-        np.concatenate([behind.values[:0:-1], ahead.values]),
-        behind.solutions[:0:-1] + ahead.solutions,
-        behind.instability[:0:-1] + ahead.instability,
-        np.concatenate([behind.fold[:0:-1], ahead.fold]),
-        ahead.stop,
-    )

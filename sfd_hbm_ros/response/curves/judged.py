@@ -42,6 +42,8 @@ class CurveBranch:
         Whether each is a fold.
     stop : Stop
         Why the branch ends.
+    begin : Stop
+        Why it ends at its first point, if it was followed from a point within it both ways.
     """
 
     family: Family
@@ -50,6 +52,7 @@ class CurveBranch:
     instability: tuple[Instability | None, ...]
     fold: NDArray[np.bool_]
     stop: Stop
+    begin: Stop = Stop.RANGE
 
     @property
     def periodic(self) -> bool:
@@ -80,6 +83,44 @@ class CurveBranch:
             for i, kind in enumerate(self.instability)
             if kind not in (None, Instability.FOLD) and None in (kinds[i], kinds[i + 2])
         ]
+
+    @property
+    def reversed(self) -> "CurveBranch":
+        """The same branch against its arc."""
+        return CurveBranch(
+            self.family,
+            self.values[::-1],
+            self.solutions[::-1],
+            self.instability[::-1],
+            self.fold[::-1],
+            self.begin,
+            self.stop,
+        )
+
+    def joined_to(self, other: "CurveBranch", first: int = 0) -> "CurveBranch":
+        """Join another branch, from its point `first` on, behind the last point of this one."""
+        return CurveBranch(
+            self.family,
+            np.concatenate([self.values, other.values[first:]]),
+            self.solutions + other.solutions[first:],
+            self.instability + other.instability[first:],
+            np.concatenate([self.fold, other.fold[first:]]),
+            other.stop,
+            self.begin,
+        )
+
+    def up_to(self, last: int) -> "CurveBranch":
+        """Its part up to a point, that included."""
+        part = slice(last + 1)
+        return CurveBranch(
+            self.family,
+            self.values[part],
+            self.solutions[part],
+            self.instability[part],
+            self.fold[part],
+            self.stop,
+            self.begin,
+        )
 
     def eccentricity(self, damper: str) -> Array:
         """Greatest eccentricity of a damper's orbit, (m,)."""

@@ -1,21 +1,15 @@
 """The jumps that a machine makes as a parameter rises or falls through a response curve."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import pairwise
 
-from sfd_hbm_ros.hbm import NewtonOptions
-from sfd_hbm_ros.hbm.corrector import ROUNDING
-from sfd_hbm_ros.hbm.newton import newton
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.journey import Leg, first_place, legs
 from sfd_hbm_ros.response.curves.judged import CurveBranch
-from sfd_hbm_ros.response.curves.place import Place, places_at
-from sfd_hbm_ros.response.responses import Response, balanced, response_at
-
-_NEWTON = NewtonOptions(iterations=12)  # between neighbouring points the start is near
+from sfd_hbm_ros.response.curves.place import Place, response_on
+from sfd_hbm_ros.response.responses import Response
 
 
 class Direction(StrEnum):
@@ -95,24 +89,3 @@ def leaps_from(curve: ResponseCurve, branch: CurveBranch, direction: Direction) 
             if leg.landing is not None and not any(leg.end.is_at(one.end) for one in found):
                 found.append(leg)
     return found
-
-
-def solutions_at(branch: CurveBranch, value: float) -> Iterator[tuple[int, Response]]:
-    """Converged responses of a branch at a value of the parameter.
-
-    Yields
-    ------
-    The index of the point before each in the order of the arc, and the response.
-    """
-    for place in places_at([branch], value):
-        response = response_on(place)
-        if response is not None:
-            yield place.index, response
-
-
-def response_on(place: Place) -> Response | None:
-    """The response of the curve's own machine at a place, if Newton's method leads there."""
-    equations = place.branch.family.at(place.value)
-    result = newton(equations, place.response.unknowns, _NEWTON)
-    # as near as the branch's own points come
-    return response_at(equations, result.x) if balanced(equations, result, ROUNDING) else None

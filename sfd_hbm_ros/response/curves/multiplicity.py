@@ -6,8 +6,8 @@ import numpy as np
 
 from sfd_hbm_ros.response.curves.curve import ResponseCurve
 from sfd_hbm_ros.response.curves.journey import first_place, landings, legs, span
-from sfd_hbm_ros.response.curves.jumps import Direction, response_on
-from sfd_hbm_ros.response.curves.place import Place, places_at
+from sfd_hbm_ros.response.curves.jumps import Direction
+from sfd_hbm_ros.response.curves.place import Place, places_at, response_on
 from sfd_hbm_ros.response.responses import SAME, Response, distance
 
 _SEEN = 0.01  # of the clearance, a difference that is more than a matter of rounding

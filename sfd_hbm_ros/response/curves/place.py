@@ -1,18 +1,28 @@
-"""Places on the branches of a response curve, read off its arrays without a solve."""
+"""Places on the branches of a response curve, read off its arrays, and the responses there."""
 
-from collections.abc import Sequence
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.hbm import Harmonics, Instability
-from sfd_hbm_ros.response.curves.curve import ResponseCurve
+from sfd_hbm_ros.hbm.corrector import ROUNDING
+from sfd_hbm_ros.hbm.newton import newton
+from sfd_hbm_ros.hbm.options import NewtonOptions
 from sfd_hbm_ros.response.curves.judged import CurveBranch
-from sfd_hbm_ros.response.responses import Response, between, distance
+from sfd_hbm_ros.response.responses import Response, balanced, between, distance, response_at
+
+if TYPE_CHECKING:
+    from sfd_hbm_ros.response.curves.curve import ResponseCurve
 
 Array = NDArray[np.float64]
+
+_NEWTON = NewtonOptions(iterations=12)  # between neighbouring points the start is near
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +108,7 @@ class Place:
         """The response at the nearer of both points."""
         return self.branch.solutions[self.point]
 
-    def is_at(self, other: "Place") -> bool:
+    def is_at(self, other: Place) -> bool:
         """Whether this is another place's stretch between two points."""
         return self.branch is other.branch and self.index == other.index
 
@@ -151,3 +161,24 @@ def motion_about(curve: ResponseCurve, orbit: Place) -> Place | None:
     ]
     about = [place for place in places_at(leaving, orbit.value) if place.stable]
     return min(about, key=lambda one: one.distance(orbit.response), default=None)
+
+
+def solutions_at(branch: CurveBranch, value: float) -> Iterator[tuple[int, Response]]:
+    """Converged responses of a branch at a value of the parameter.
+
+    Yields
+    ------
+    The index of the point before each in the order of the arc, and the response.
+    """
+    for place in places_at([branch], value):
+        response = response_on(place)
+        if response is not None:
+            yield place.index, response
+
+
+def response_on(place: Place) -> Response | None:
+    """The response of the curve's own machine at a place, if Newton's method leads there."""
+    equations = place.branch.family.at(place.value)
+    result = newton(equations, place.response.unknowns, _NEWTON)
+    # as near as the branch's own points come
+    return response_at(equations, result.x) if balanced(equations, result, ROUNDING) else None

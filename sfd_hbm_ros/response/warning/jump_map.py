@@ -177,7 +177,8 @@ def _jump(curve: ResponseCurve, place: Place, direction: Direction) -> JumpAhead
         if branch.stop is not Stop.CLOSED and point in (0, len(branch.values) - 1):
             if end.value in span(curve.branches):
                 return JumpAhead(direction, math.inf, reach=end.value)
-            if point > 0 and branch.stop is not Stop.CLEARANCE:
+            lost = branch.stop if point > 0 else branch.begin
+            if lost not in (Stop.CLEARANCE, Stop.RANGE) or (point > 0 and lost is Stop.RANGE):
                 break  # where it was lost
         before = branch.solutions[point]
         after = landing.eccentricity if landing else math.nan

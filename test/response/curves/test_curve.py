@@ -10,7 +10,8 @@ from sfd_hbm_ros.hbm.points import Stop
 from sfd_hbm_ros.machine import override_all
 from sfd_hbm_ros.response.curves.curve import parameter_curve, response_curve
 from sfd_hbm_ros.response.curves.detached import detached_branches
-from sfd_hbm_ros.response.curves.jumps import Direction, jumps, solutions_at
+from sfd_hbm_ros.response.curves.jumps import Direction, jumps
+from sfd_hbm_ros.response.curves.place import solutions_at
 from sfd_hbm_ros.response.curves.summary import Summary
 from sfd_hbm_ros.response.errors import NoSolutionError
 
