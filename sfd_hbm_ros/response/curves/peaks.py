@@ -45,6 +45,9 @@ _SMOOTH = 0.001  # of the vibration, by which a cubic may err in the middle of a
 
 Measure = Callable[[float, Response], Array]
 
+LOCKED_UP = 0.995
+"""Eccentricity beyond which the film is all but locked, if no peak lies there."""
+
 
 class DiskVibration(NamedTuple):
     """The greatest vibration of any disk at a point of a curve.
@@ -127,7 +130,9 @@ class CurveVibrations:
     def greatest_of_disks(self) -> DiskVibration | None:
         """The greatest stable vibration of any disk, at the known points and at the peaks.
 
-        None where the machine has no disk or no response is stable.
+        Points beyond `LOCKED_UP` that are no peak are left out: on a branch that ends on the
+        clearance the rotor nears a resonance with its journals held, and the number grows without
+        bound. None where the machine has no disk or no response is stable.
         """
         found = [
             DiskVibration(peak.of, peak.vibration, peak.value, peak.response)
@@ -135,7 +140,8 @@ class CurveVibrations:
         ]
         for arc in self._disk_arcs:
             for node in arc.nodes:
-                if node.stable and np.isfinite(node.heights).any():
+                below = node.response.eccentricity_max < LOCKED_UP
+                if node.stable and below and np.isfinite(node.heights).any():
                     column = int(np.nanargmax(node.heights))
                     disk = self._curve.balance.machine.disks[column].name
                     height = float(node.heights[column])

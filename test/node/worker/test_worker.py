@@ -153,7 +153,7 @@ def test_an_exception_is_told_and_tried_again(worker):
     until(worker, lambda: worker.job is None)
     assert worker.failed
     assert worker.replacements == NO_PAUSE.attempts
-    assert "it raised ValueError: harmonics: 0 is not allowed" in worker.problem
+    assert "it raised OptionError: harmonics: 0 is not allowed" in worker.problem
 
 
 def test_where_there_is_no_solution_no_other_attempt_is_made(worker):
