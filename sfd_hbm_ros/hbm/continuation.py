@@ -16,7 +16,7 @@ from sfd_hbm_ros.hbm.points import Point, Stop
 
 Array = NDArray[np.float64]
 
-_CROWDED = 0.999  # eccentricity beyond which a step that fails shows that no room is left
+_CROWDED = 0.99  # eccentricity beyond which a step that fails shows that no room is left
 _BEHIND = 2  # points besides the last that say where the next one lies
 _RECENT = 100  # steps that have to come further
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sfd_hbm_ros.film import FilmForces, Motion
-from sfd_hbm_ros.hbm.harmonics import Harmonics
+from sfd_hbm_ros.hbm.harmonics import MAX_SAMPLES, Harmonics
 
 Array = NDArray[np.float64]
 
@@ -84,7 +84,7 @@ def sampled(
     forces = film.linearise(*motion)
     if motion_at is not None:
         for _ in range(_DOUBLINGS):
-            if _end(finest, forces) <= _COARSE:
+            if _end(finest, forces) <= _COARSE or 2 * finest.harmonics.samples > MAX_SAMPLES:
                 break
             finest = _finer(finest.harmonics)
             motion = motion_at(finest.harmonics)
@@ -95,7 +95,10 @@ def sampled(
 def _end(grid: _Grid, forces: FilmForces) -> float:
     """Part of a force that lies at the end of the spectrum of its samples."""
     greatest = np.abs(forces.force).max()
-    return float(np.abs(grid.end @ forces.force).max() / greatest) if greatest > 0.0 else 0.0
+    if not greatest > 0.0:
+        return 0.0
+    # Samples so few that no order is left beyond the motion's own tell nothing of the force's.
+    return float(np.abs(grid.end @ forces.force).max() / greatest) if len(grid.end) else np.inf
 
 
 @lru_cache(maxsize=64)

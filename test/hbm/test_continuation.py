@@ -180,7 +180,7 @@ def test_a_branch_up_to_a_resonance_ends():
     branch = Branch(family, first, 0.0325, 0.028, options=ContinuationOptions(points=150))
     points = list(branch)
     assert branch.stop is Stop.CLEARANCE
-    assert points[-1].eccentricity > branch.options.eccentricity
+    assert points[-1].eccentricity > 0.995  # it grows to 1 as the resonance comes nearer
     assert points[-1].value == pytest.approx(0.03143, abs=2e-5)
 
 

@@ -8,7 +8,10 @@ from sfd_hbm_ros.machine import get, machine_from_dict
 
 from .changes import DELETED, changed, refusal
 
-TOP = "name, materials, shaft, disks, bearings, dampers, unbalance, loads, gravity"
+TOP = (
+    "name, materials, shaft, disks, bearings, dampers, unbalance, loads, gravity, "
+    "operating_speed_rpm"
+)
 DISK = "name, node, mass, polar_inertia, diametral_inertia"
 STATIONS = "must be one of the stations disk_1, disk_2, disk_3, bearing_1, damper_1"
 SUPPORT = "bearings and dampers must support the shaft at two nodes or more, not 1"

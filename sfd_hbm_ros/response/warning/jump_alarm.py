@@ -84,9 +84,9 @@ class JumpAlarm:
             Whether model and machine differ. Then there is a warning whatever the model says, and
             no error that is the model's.
         """
-        given = {**readings(outlook, eccentricity), **others}
         settings = settings or self.settings
         for level, alarm in self.alarms.items():
+            given = {**readings(outlook, eccentricity, level), **others}
             believed = {**given, **FAR} if doubtful and level is Level.ERROR else given
             present = self._switches[level].update(believed, settings)
             present = present or (doubtful and level is Level.WARN)

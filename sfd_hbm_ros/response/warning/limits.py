@@ -77,15 +77,17 @@ FAR = {
 """Readings of what a model tells that hold no alarm."""
 
 
-def readings(outlook: Outlook, eccentricity: float) -> dict[str, float]:
-    """Return what the outlook and the greatest eccentricity say about the limits, by their names.
+def readings(outlook: Outlook, eccentricity: float, level: Level) -> dict[str, float]:
+    """Return what the outlook and the greatest eccentricity say about a level's limits, by name.
 
+    A warning does not wait until the acceleration has settled, as an error does: while another
+    one is taken over, the time seems longer than it is.
     NaN stands for what is not known (REP 117).
     """
     return {
         MARGIN.name: outlook.margin / RPM,
         MARGIN_PERCENT.name: 100.0 * outlook.relative_margin,
-        TIME.name: outlook.time_to_jump,
+        TIME.name: outlook.time_to_jump if level is Level.ERROR else outlook.rough_time_to_jump,
         ECCENTRICITY.name: eccentricity,
     }
 

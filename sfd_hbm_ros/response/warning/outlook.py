@@ -140,11 +140,15 @@ class Outlook:
 
         It is not known until the acceleration has settled, after a start or a reversal.
         """
+        moving = self.acceleration != 0.0 and math.isfinite(self.margin)
+        return math.nan if moving and not self.settled else self.rough_time_to_jump
+
+    @property
+    def rough_time_to_jump(self) -> float:
+        """The same [s], whether or not the acceleration has settled."""
         margin = self.margin
         if not math.isfinite(margin):
             return margin
-        if self.acceleration != 0.0 and not self.settled:
-            return math.nan
         return margin / abs(self.acceleration) if self.acceleration != 0.0 else math.inf
 
     def _remoteness(self, jump: JumpAhead) -> tuple[int, float]:
