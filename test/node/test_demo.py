@@ -52,7 +52,8 @@ def test_a_row_is_printed_each_second(demo):
     times = [float(row[0]) for row in rows(demo)]
     assert times == sorted(times)
     assert 5 <= len(times) <= 13
-    assert times[-1] == pytest.approx(11.0, abs=0.1)  # s: 4 up, 3 there, 4 down
+    # s: 4 up, 3 there, 4 down; speeds are best effort, and a busy computer may lose the very last
+    assert 10.5 <= times[-1] <= 11.1
 
 
 def test_a_row_shows_what_solve_finds(demo):
