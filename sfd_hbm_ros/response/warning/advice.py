@@ -156,7 +156,7 @@ def _about_level(alarm: JumpAlarm, now: float, rounding: Rounding) -> str:
         return "".join(f"; {_held(cause)}" for cause in causes)
     rest = alarm.held_for(now)
     if not rest:
-        return ""
+        return _about_latch(alarm, now)
     soon = rounding.within_time("held for", rest)
     return f"; no limit is passed any more, {alarm.level(now).name} ends in {soon}"
 
@@ -174,6 +174,15 @@ def _held(cause: Cause) -> str:
     back = "below" if limit.above else "above"
     release = limit.shown(cause.release)
     return f"the {limit.about} is not yet back {back} {release}, its limit is {threshold}"
+
+
+def _about_latch(alarm: JumpAlarm, now: float) -> str:
+    """That a level is latched while another alarm, which is active, is spoken of."""
+    level = alarm.level(now)
+    own = alarm.alarms.get(level)
+    if own is None or own.active or own is alarm.leading:
+        return ""
+    return f"; {level.name} is latched, the warning has gone that raised it"
 
 
 def _about_alarm(alarm: JumpAlarm, now: float, rounding: Rounding) -> str:
